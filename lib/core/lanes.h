@@ -1,5 +1,5 @@
-// lib/core/lanes.h -- a Vec3 in the lanes of a vector register, for the innermost loops. Operators of __m128 and __m256d
-// work lane by lane; each lane rounds as a scalar does, so results have the same bits on every processor.
+// lib/core/lanes.h -- a Vec3 in the lanes of a vector register, for the innermost loops. Operators of __m128 and
+// __m256d work lane by lane; each lane rounds as a scalar does, so results have the same bits on every processor.
 #pragma once
 
 #include <immintrin.h>

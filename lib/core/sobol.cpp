@@ -49,7 +49,6 @@ std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
   return reverse_bits(permute_low_to_high(reverse_bits(index), seed));
 }
 
-
 }  // namespace
 
 // Owen scrambling permutes reversed bits, then reverses them: of both coordinates at once.

@@ -101,8 +101,7 @@ PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel
     mean.photons += pilot.photons / double(pilots.size());
     mean.area += pilot.area / double(pilots.size());
   }
-  const double more =
-      mean.photons > 0 ? nearest_on_grid(std::clamp(1 / mean.photons, 1.0, kMostTimesPhotons), 4) : 1;
+  const double more = mean.photons > 0 ? nearest_on_grid(std::clamp(1 / mean.photons, 1.0, kMostTimesPhotons), 4) : 1;
   const auto paths = std::uint64_t(std::llround(double(photons) * more));
   // The density of N photons, filtered by a Gaussian of deviation s, has the squared error v / (N s^2) + b s^2: noise
   // plus bias. The error is least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as

@@ -15,7 +15,8 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kBatchesAtOnce = 256;  ///< batches whose contributions are kept before they are added
+constexpr std::size_t kBatchesAtOnce =
+    256;  ///< batches that are traced in parallel before their light is added in order
 
 }  // namespace
 

@@ -48,8 +48,7 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
 }
 
 /// Numbers per value of a track; for weights, the number of morph targets of the node's mesh.
-std::size_t components_of(const Import& import, Path path, std::size_t property, int target,
-                          const std::string& place) {
+std::size_t components_of(const Import& import, Path path, std::size_t property, int target, const std::string& place) {
   switch (path) {
     case Path::weights: break;
     case Path::material: return material_properties()[property].components();

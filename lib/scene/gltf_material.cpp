@@ -45,7 +45,9 @@ void ignore_texture(const ExtensionReader& reader, const char* key) {
 
 /// A JSON pointer inside a material, taken apart.
 struct PropertyPlace {
-  std::string extension, parent, key;  ///< extension: empty for the core specification; parent: before the key
+  std::string extension;  ///< name of the extension that has the property; empty for the core specification
+  std::string parent;     ///< the pointer without its last name
+  std::string key;        ///< the pointer's last name
 
   explicit PropertyPlace(std::string_view pointer) {
     constexpr std::string_view kPrefix = "/extensions/";

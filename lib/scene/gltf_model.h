@@ -23,11 +23,11 @@ struct Import {
   Scene& scene;
   const Gated* gated = nullptr;
   const GltfOptions* options = nullptr;
-  std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
-  std::vector<int> node_from_source{};  ///< index in the scene of each node of the file; -1: not in the scene
-  std::vector<int> mesh_from_source{};  ///< likewise for meshes; -1: not used or without triangles
+  std::uint64_t geometry_budget = 0;             ///< bytes that may still be allocated for geometry
+  std::vector<int> node_from_source{};           ///< index in the scene of each node of the file; -1: not in the scene
+  std::vector<int> mesh_from_source{};           ///< likewise for meshes; -1: not used or without triangles
   std::vector<ColorFactors> emission_factors{};  ///< of each material of the scene
-  std::vector<EncodedImage> images{};   ///< images of the scene, in the order in which textures name them
+  std::vector<EncodedImage> images{};            ///< images of the scene, in the order in which textures name them
   std::vector<std::uint32_t> image_from_source{};  ///< index in `images` of each image of the file; kNone: not read
   /// Counts one kind of repair or ignored feature.
   struct Mended {

@@ -22,17 +22,16 @@ struct Property {
 
 constexpr std::string_view kNodes = "/nodes/", kMaterials = "/materials/", kCameras = "/cameras/",
                            kLights = "/extensions/KHR_lights_punctual/lights/";
-constexpr std::array kProperties{
-    Property{kNodes, "/translation", Path::translation},
-    Property{kNodes, "/rotation", Path::rotation},
-    Property{kNodes, "/scale", Path::scale},
-    Property{kNodes, "/weights", Path::weights},
-    Property{kLights, "/color", Path::light_color},
-    Property{kLights, "/intensity", Path::light_intensity},
-    Property{kLights, "/spot/innerConeAngle", Path::inner_cone},
-    Property{kLights, "/spot/outerConeAngle", Path::outer_cone},
-    Property{kCameras, "/perspective/yfov", Path::yfov},
-    Property{kCameras, "/orthographic/ymag", Path::ymag}};
+constexpr std::array kProperties{Property{kNodes, "/translation", Path::translation},
+                                 Property{kNodes, "/rotation", Path::rotation},
+                                 Property{kNodes, "/scale", Path::scale},
+                                 Property{kNodes, "/weights", Path::weights},
+                                 Property{kLights, "/color", Path::light_color},
+                                 Property{kLights, "/intensity", Path::light_intensity},
+                                 Property{kLights, "/spot/innerConeAngle", Path::inner_cone},
+                                 Property{kLights, "/spot/outerConeAngle", Path::outer_cone},
+                                 Property{kCameras, "/perspective/yfov", Path::yfov},
+                                 Property{kCameras, "/orthographic/ymag", Path::ymag}};
 
 std::size_t count_of(const Import& import, std::string_view array) {
   return array == kNodes       ? import.model.nodes.size()

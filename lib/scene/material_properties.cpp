@@ -44,28 +44,30 @@ constexpr std::array kTextures{
 
 // A new member changes these counts. It needs a row above, in which reader, hash and animation find it.
 [[maybe_unused]] constexpr auto members = [](const MaterialValues& values) {
-  [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission, thin_walled,
-               attenuation_color, attenuation_distance, double_sided, unlit] = values;
+  [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
+                                thin_walled, attenuation_color, attenuation_distance, double_sided, unlit] = values;
   return 13;
 };
 static_assert(kProperties.size() == 13 + 2);  // besides: alpha cutoff, the second factor of the emission
 [[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
-  [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, normal_scale, vertex_colors] = values;
+  [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, normal_scale,
+                                vertex_colors] = values;
   return 7;
 };
 static_assert(kTextures.size() == 7 - 2);  // normal_scale and vertex_colors are no textures
 
 Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& property) {
   Rgb colour;
-  for (int c = 0; c < 3; ++c)
-    colour[c] = float(std::clamp(numbers[std::size_t(c)], property.lower, property.upper));
+  for (int c = 0; c < 3; ++c) colour[c] = float(std::clamp(numbers[std::size_t(c)], property.lower, property.upper));
   return colour;
 }
 
 }  // namespace
 
 std::size_t MaterialProperty::components() const {
-  return role == colour_and_alpha ? 4 : std::holds_alternative<Rgb Material::*>(member) && role != emission_strength ? 3 : 1;
+  return role == colour_and_alpha                                                       ? 4
+         : std::holds_alternative<Rgb Material::*>(member) && role != emission_strength ? 3
+                                                                                        : 1;
 }
 
 std::span<const MaterialProperty> material_properties() { return kProperties; }
@@ -93,9 +95,9 @@ void set_property(const MaterialProperty& property, std::span<const double> numb
       break;
     default: break;
   }
-  if (const auto* one = std::get_if<float Material::*>(&property.member)) material.**one = number();
+  if (const auto* one = std::get_if<float Material::*>(&property.member)) material.** one = number();
   else if (const auto* colour = std::get_if<Rgb Material::*>(&property.member))
-    material.**colour = limited_colour(numbers, property);
+    material.** colour = limited_colour(numbers, property);
   else material.*std::get<bool Material::*>(property.member) = numbers[0] != 0;
 }
 

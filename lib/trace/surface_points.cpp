@@ -35,8 +35,7 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   __m128 normal = normal_geometric;
   if (surface.smooth) {
     const SurfaceArrays::Corners normals = surface.corner_normals(corner, own);
-    const __m128 n =
-        lanes::normalize(mix(lanes::load(*normals.a), lanes::load(*normals.b), lanes::load(*normals.c)));
+    const __m128 n = lanes::normalize(mix(lanes::load(*normals.a), lanes::load(*normals.b), lanes::load(*normals.c)));
     if (_mm_cvtss_f32(lanes::dot(n, n)) > 0) {
       const __m128 behind = _mm_cmp_ps(lanes::dot(n, normal_geometric), _mm_setzero_ps(), _CMP_LT_OQ);
       normal = _mm_xor_ps(n, _mm_and_ps(behind, sign));
@@ -50,10 +49,11 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   if (const Vec2* uv = surface.uvs)
     point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
                 uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
-  point.offset = surface.instance ? surface.instance_offset
-                                  : kOffsetScale * max_component(lanes::to_vec(_mm_max_ps(
-                                                       _mm_max_ps(_mm_andnot_ps(sign, a), _mm_andnot_ps(sign, b)),
-                                                       _mm_andnot_ps(sign, c))));
+  point.offset =
+      surface.instance
+          ? surface.instance_offset
+          : kOffsetScale * max_component(lanes::to_vec(_mm_max_ps(
+                               _mm_max_ps(_mm_andnot_ps(sign, a), _mm_andnot_ps(sign, b)), _mm_andnot_ps(sign, c))));
   point.surface = hit.surface;
   point.triangle = hit.triangle;
   point.object = surface.object;

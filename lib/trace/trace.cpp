@@ -25,12 +25,14 @@ namespace {
 /// kOffsetScale of instances: the share of the sum in instance_offset().
 constexpr float kInstanceOffsetScale = 2 * kOffsetScale;
 
-/// Embree multiplies by an estimate of 1 / den whose last bits differ between makers of processors, so Embree's distance
-/// must not decide. Hits behind the nearest one are looked at as far as this share of the distance. Embree's distance
-/// errs by about 4 ulp (2^-21) over the cosine between ray and normal: the share covers cosines down to 1/128.
+/// Embree computes distances with an estimate of a reciprocal, whose last bits differ between makers of processors. So
+/// Embree's distance must not decide which hit is nearest: hits that Embree finds at most this share of the distance
+/// behind the nearest hit are measured, too. Embree's distance errs by 4 ulp (2^-21), divided by the cosine between the
+/// ray and the normal. The share exceeds this error if the cosine is above 1/128.
 constexpr float kMargin = 0x1p-14f;
-/// The ray's range is longer by this share at both ends for Embree, so that our own arithmetic decides at the ends: 4
-/// ulp, where makers differ by 2. A larger share would make shadow rays meet the lamp at which they end.
+/// Embree's range of a ray is longer than the ray's own range by this share at both ends, so that our own arithmetic
+/// decides at the ends. Makers differ by 2 ulp; this share is 4 ulp. With a larger share shadow rays would often meet
+/// the lamp at which they end.
 constexpr float kEnds = 0x1p-21f;
 
 /// Robust: no ray slips between two triangles that share an edge.
@@ -40,8 +42,7 @@ const RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT
 /// depend on the order in which Embree finds hits, or on the thread.
 float chance(const Ray& ray, std::uint32_t surface, std::uint32_t triangle) {
   std::uint64_t key = mix64((std::uint64_t(surface) << 32 | triangle) + 0x616c706861ull);
-  for (const float x :
-       {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z})
+  for (const float x : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z})
     key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
   return float(key >> 40) * 0x1p-24f;
 }
@@ -54,8 +55,8 @@ bool usable(const Ray& ray) {
   const __m256 numbers = _mm256_loadu_ps(&ray.origin.x);
   const __m256 low = _mm256_setr_ps(-kLargest, -kLargest, -kLargest, -kLargest, -kLargest, -kLargest, 0, -INFINITY),
                high = _mm256_setr_ps(kLargest, kLargest, kLargest, kLargest, kLargest, kLargest, INFINITY, INFINITY);
-  return _mm256_movemask_ps(_mm256_and_ps(_mm256_cmp_ps(numbers, low, _CMP_GE_OQ),
-                                          _mm256_cmp_ps(numbers, high, _CMP_LE_OQ))) == 0xff;
+  return _mm256_movemask_ps(
+             _mm256_and_ps(_mm256_cmp_ps(numbers, low, _CMP_GE_OQ), _mm256_cmp_ps(numbers, high, _CMP_LE_OQ))) == 0xff;
 }
 
 /// Order of hits: by distance; at equal distance by surface, so that what stands comes before what moves, then by
@@ -66,8 +67,8 @@ bool before(const Hit& a, const Hit& b) {
 
 }  // namespace
 
-/// A ray on its way through the trees. Embree finds triangles and calls a filter for each; the filter decides by our own
-/// arithmetic. It must not throw, so build() has decoded the textures that it reads.
+/// A ray on its way through the trees. Embree finds triangles and calls a filter for each; the filter decides by our
+/// own arithmetic. It must not throw, so build() has decoded the textures that it reads.
 struct Tracer::Impl::Query : RTCIntersectContext {
   const Impl& scene;
   const Ray& ray;
@@ -89,8 +90,8 @@ struct Tracer::Impl::Query : RTCIntersectContext {
     r.id = r.flags = 0;
   }
 
-  /// The surface of the triangle that Embree has found: the geometry in this tree, or the instance in whose own tree the
-  /// triangle was found.
+  /// The surface of the triangle that Embree has found: the geometry in this tree, or the instance in whose own tree
+  /// the triangle was found.
   std::uint32_t surface_of(const RTCFilterFunctionNArguments& found) const {
     const unsigned instance = instID[0], geometry = RTCHitN_geomID(found.hit, 1, 0);
     return first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
@@ -105,8 +106,8 @@ struct Tracer::Impl::Query : RTCIntersectContext {
                       surface.positions[corner[2]]);
   }
 
-  /// The hit that Embree has found on any surface. False if it is not in the ray's range or there is nothing by alpha: a
-  /// hole (MASK), or with probability 1 - alpha (BLEND).
+  /// The hit that Embree has found on any surface. False if it is not in the ray's range or there is nothing by alpha:
+  /// a hole (MASK), or with probability 1 - alpha (BLEND).
   [[gnu::noinline]] bool measure(const RTCFilterFunctionNArguments& found, Hit& hit) const {
     hit.surface = surface_of(found);
     hit.triangle = RTCHitN_primID(found.hit, 1, 0);

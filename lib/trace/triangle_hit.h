@@ -17,9 +17,9 @@ struct TriangleHit {
 };
 
 /// The point origin + t direction in the plane of the triangle a, b, c: Cramer's rule with e1 = b - a, e2 = c - a,
-/// s = origin - a, p = direction x e2, q = s x e1 and the determinant e1 . p. Every number is a double, so only the last
-/// roundings to float are seen. Additions, multiplications and divisions round alike on every processor.
-/// Source: Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997.
+/// s = origin - a, p = direction x e2, q = s x e1 and the determinant e1 . p. Every number is a double, so only the
+/// last roundings to float are seen. Additions, multiplications and divisions round alike on every processor. Source:
+/// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997.
 inline TriangleHit meet_plane(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   const __m256d corner = lanes::load_double(a), way = lanes::load_double(direction),
                 e1 = lanes::load_double(b) - corner, e2 = lanes::load_double(c) - corner,
@@ -34,8 +34,8 @@ inline TriangleHit meet_plane(const Vec3& origin, const Vec3& direction, const V
 
 /// The hit of a ray that Embree lets meet the triangle. Embree decides in single precision, so the ray may pass the
 /// triangle by a rounding error. Its hit is then the place of the triangle's border with the barycentric coordinates
-/// brought into [0, 1], and t the multiple of the direction that comes nearest to this place: in the plane of a triangle
-/// that is seen at a grazing angle, the ray would be met far away from the triangle.
+/// brought into [0, 1], and t the multiple of the direction that comes nearest to this place: in the plane of a
+/// triangle that is seen at a grazing angle, the ray would be met far away from the triangle.
 inline TriangleHit meet_triangle(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b,
                                  const Vec3& c) {
   TriangleHit hit = meet_plane(origin, direction, a, b, c);

@@ -6,6 +6,7 @@ BLENDER: Python of a virtual environment with bpy, or a program. The line is run
 samples and OIDN, without motion blur and depth of field, which we do not render; --caustics as words of FRAMES' end (1,18:caustics) keep its
 light through glass. SIZE=192x108 in the environment: a smaller picture. KEEP_CYCLES=1, KEEP_OURS=1: what is there is not rendered again. Written: OUT/F_cycles.exr, OUT/ours/frames/*.exr, OUT/F.png: ours above, Cycles below, at one exposure.
 """
+
 import os
 import pathlib
 import shlex
@@ -61,7 +62,11 @@ def cycles(blend, blender, out, frames):
     script = out / "render.py"
     script.write_text(RENDER)
     words = [blend, out, frames, *SIZE]
-    line = [blender, "-B", script, *words] if os.path.basename(blender).startswith("python") else [blender, "-b", "-P", script, "--", *words]
+    line = (
+        [blender, "-B", script, *words]
+        if os.path.basename(blender).startswith("python")
+        else [blender, "-b", "-P", script, "--", *words]
+    )
     done = subprocess.run(list(map(str, line)), capture_output=True, text=True)
     found = {}
     for text in done.stdout.splitlines():
@@ -93,7 +98,11 @@ def rows(ours, theirs, names):
         for x in range(width):
             i = y * width + x
             tiles.setdefault((x * TILES[0] // width, y * TILES[1] // height), []).append(i)
-            inner = 0 < x < width - 1 and 0 < y < height - 1 and all(index[i + s] == index[i] for s in (-1, 1, -width, width))
+            inner = (
+                0 < x < width - 1
+                and 0 < y < height - 1
+                and all(index[i + s] == index[i] for s in (-1, 1, -width, width))
+            )
             if inner:
                 objects.setdefault(names.get(int(index[i]), "nothing"), []).append(i)
     for group, found in (("object", objects), ("tile", tiles)):
@@ -101,7 +110,9 @@ def rows(ours, theirs, names):
             if len(where) < 12:
                 continue
             a, b = ([mean(c[k], where) for k in "RGB"] for c in (ours.channels, rgb))
-            yield group, name, len(where), a, b, max(max(ours.channels[k][i] for i in where) / max(len(where) * m, 1e-9) for k, m in zip("RGB", a))
+            yield group, name, len(where), a, b, max(
+                max(ours.channels[k][i] for i in where) / max(len(where) * m, 1e-9) for k, m in zip("RGB", a)
+            )
 
 
 def main():
@@ -109,12 +120,20 @@ def main():
     line = shlex.split(" ".join(map(shlex.quote, sys.argv[6:]))) if len(sys.argv) > 6 else []
     out = pathlib.Path(out).resolve()
     out.mkdir(parents=True, exist_ok=True)
-    names = cycles(blend, blender, out, frames) if not (out / "names").exists() or not os.environ.get("KEEP_CYCLES") else dict(
-        (int(n), name) for n, name in (t.split(" ", 1) for t in (out / "names").read_text().splitlines()))
+    names = (
+        cycles(blend, blender, out, frames)
+        if not (out / "names").exists() or not os.environ.get("KEEP_CYCLES")
+        else dict((int(n), name) for n, name in (t.split(" ", 1) for t in (out / "names").read_text().splitlines()))
+    )
     (out / "names").write_text("\n".join(f"{n} {name}" for n, name in names.items()))
     numbers = list(map(int, frames.split(":")[0].split(",")))
     if line and not os.environ.get("KEEP_OURS"):
-        more = [f"SIZE={SIZE[0]}x{SIZE[1]}", f"FRAMES={','.join(map(str, numbers))}", f"OUT={out}/ours", f"BIN={TOP}/build/release/bin"]
+        more = [
+            f"SIZE={SIZE[0]}x{SIZE[1]}",
+            f"FRAMES={','.join(map(str, numbers))}",
+            f"OUT={out}/ours",
+            f"BIN={TOP}/build/release/bin",
+        ]
         done = subprocess.run([*line, *more], cwd=out, capture_output=True, text=True)
         if done.returncode:
             sys.exit(done.stdout[-3000:] + done.stderr[-3000:])
@@ -127,7 +146,11 @@ def preview(out, number, ours, theirs):
     both = {k: list(ours.channels[k]) + list(rgb[k]) for k in "RGB"}
     stacked = out / f"{number}_both.exr"
     exr.write(stacked, SIZE[0], 2 * SIZE[1], both)
-    subprocess.run([TOP / "build/release/bin/tempolux-info", "--png", out / f"{number}.png", stacked], check=True, capture_output=True)
+    subprocess.run(
+        [TOP / "build/release/bin/tempolux-info", "--png", out / f"{number}.png", stacked],
+        check=True,
+        capture_output=True,
+    )
 
 
 def report(out, numbers, names):
@@ -143,8 +166,20 @@ def report(out, numbers, names):
         for (kind, name), found in worst.items():
             if kind == group:
                 ratios = [[x / y if y > 1e-4 else float("nan") for x, y in zip(a, b)] for _, _, a, b, _ in found]
-                far = max(abs(r - 1) for row in ratios for r in row if r == r) if any(r == r for row in ratios for r in row) else 0
-                lines.append((far, name, found[0][1], ratios, [(n, s) for n, pixels, _, _, s in found if s > max(.2, 4 / pixels)]))
+                far = (
+                    max(abs(r - 1) for row in ratios for r in row if r == r)
+                    if any(r == r for row in ratios for r in row)
+                    else 0
+                )
+                lines.append(
+                    (
+                        far,
+                        name,
+                        found[0][1],
+                        ratios,
+                        [(n, s) for n, pixels, _, _, s in found if s > max(0.2, 4 / pixels)],
+                    )
+                )
         lines.sort(reverse=True, key=lambda l: l[0])
         inside = sum(l[0] <= .1 for l in lines)
         print(f"  within 10 %: {inside} of {len(lines)}; within 3 %: {sum(l[0] <= .03 for l in lines)}")

@@ -5,6 +5,7 @@
 FOLDER has CASE.py that write the .blend they are told to (../shared/scenes/blender). A Blender is a program, or the Python of a virtual
 environment with bpy; without --blender all of build/peers/bpy-*/bin/python, and blender on PATH. Exit 1 if one raises or writes no file.
 """
+
 import argparse
 import json
 import os
@@ -41,7 +42,9 @@ def is_module(blender):
 def run(words):
     """Debian's Blender takes the numpy of the first python3 on PATH."""
     path = os.environ["PATH"] if is_module(words[0]) else "/usr/bin:" + os.environ["PATH"]
-    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
+    return subprocess.run(
+        list(map(str, words)), capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path}
+    )
 
 
 def make(blender, case, blend, helper):
@@ -60,7 +63,9 @@ def export(blender, blend, glb, helper, options=()):
 
 
 def version_of(blender):
-    said = run([blender, "-c", "import bpy; print(bpy.app.version_string)"] if is_module(blender) else [blender, "--version"]).stdout
+    said = run(
+        [blender, "-c", "import bpy; print(bpy.app.version_string)"] if is_module(blender) else [blender, "--version"]
+    ).stdout
     return said.replace("Blender", "").split()[0] if said.split() else "none"
 
 
@@ -70,11 +75,18 @@ def contents(glb):
     document = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
     counts = {kind: len(document.get(kind, [])) for kind in ("nodes", "meshes", "materials", "images", "cameras")}
     channels = sum(len(a["channels"]) for a in document.get("animations", []))
-    return ", ".join(f"{n} {kind}" for kind, n in {**counts, "channels": channels}.items() if n) + f", {len(data) // 1000} kB"
+    return (
+        ", ".join(f"{n} {kind}" for kind, n in {**counts, "channels": channels}.items() if n)
+        + f", {len(data) // 1000} kB"
+    )
 
 
 def show(case, done, glb):
-    said = [line.replace("tempolux_export.py: ", "") for line in done.stderr.splitlines() if line.startswith("tempolux_export.py: ")]
+    said = [
+        line.replace("tempolux_export.py: ", "")
+        for line in done.stderr.splitlines()
+        if line.startswith("tempolux_export.py: ")
+    ]
     raised = done.returncode != 0 or "Traceback" in done.stderr + done.stdout or not glb.exists()
     print(f"  {case}: {'RAISES' if raised else contents(glb)}")
     for line in (done.stderr + done.stdout).splitlines()[-12:] if raised else said:

@@ -19,7 +19,14 @@ from measure import Missing, Steps
 
 WITHIN = 0.02         # of the instructions; placement of memory moves them by less than a thousandth
 KINDS = ("photons", "irradpoints", "irradcache", "radsamples", "meshirrad", "exr")
-SMALL = {"SIZE": "32x18", "PHOTONS": "4k", "POINTS": "--point-count 1k", "CACHE": "--rays 20 --error-bound 1", "PIXELS": "--spp 2 --pixel-error 0", "FILTER": "1"}
+SMALL = {
+    "SIZE": "32x18",
+    "PHOTONS": "4k",
+    "POINTS": "--point-count 1k",
+    "CACHE": "--rays 20 --error-bound 1",
+    "PIXELS": "--spp 2 --pixel-error 0",
+    "FILTER": "1",
+}
 BARE = SMALL | {"FILTER": "none"}     # chains that end before the filter
 S1, S2, S3 = (f"pipelines/scenes/{name}.glb" for name in ("S1_cornell", "S2_cornell_moving", "S3_indirect_room"))
 
@@ -27,18 +34,34 @@ S1, S2, S3 = (f"pipelines/scenes/{name}.glb" for name in ("S1_cornell", "S2_corn
 MADE = {
     "still": {"SCENE": S2, "FRAMES": "10", "INDIRECT": "records", **SMALL},
     "sky": {"SCENE": S1, "FRAMES": "0", "SKY": "1,1,1", "METHOD": "frames", **SMALL},
-    "walk": {"SCENE": "pan.glb", "FRAMES": "0-4", "INDIRECT": "records", "METHOD": "walkthrough", "KEY_DISTANCE": "4", **SMALL},
+    "walk": {
+        "SCENE": "pan.glb",
+        "FRAMES": "0-4",
+        "INDIRECT": "records",
+        "METHOD": "walkthrough",
+        "KEY_DISTANCE": "4",
+        **SMALL,
+    },
     "localised": {"SCENE": S2, "FRAMES": "0-2", "INDIRECT": "records", "MOVING": "records", **BARE},
     "temporal": {"SCENE": S2, "FRAMES": "0-2", "INDIRECT": "records", "MOVING": "time", **BARE},
     "split": {"SCENE": S3, "FRAMES": "0", "INDIRECT": "records", "SPLIT": "on", **BARE},
     "filter": {"SCENE": S2, "FRAMES": "9-11", "INDIRECT": "paths", **SMALL, "FILTER": "5"},
     "preview": {"SCENE": S2, "FRAMES": "0-1", "METHOD": "preview", "SIZE": "32x18", "PHOTONS": "4k"},
-    "smoke": {"SCENE": S1, "FRAMES": "0-1", "INDIRECT": "records", "VOLUME": "smoke_####.vdb", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-1",
-              "UPDATE": "20%", **SMALL},
+    "smoke": {
+        "SCENE": S1,
+        "FRAMES": "0-1",
+        "INDIRECT": "records",
+        "VOLUME": "smoke_####.vdb",
+        "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-1",
+        "UPDATE": "20%",
+        **SMALL,
+    },
 }
 # By the tools: words of each command; a word that ends in .exr or .photons without a folder is a file of the canary's own.
 TYPED = {
-    "paths": [["frame-render", S2, "--frame", "10", "--size", "32x18", "--integrator", "path", "--spp", "4", "-o", "p.exr"]],
+    "paths": [
+        ["frame-render", S2, "--frame", "10", "--size", "32x18", "--integrator", "path", "--spp", "4", "-o", "p.exr"]
+    ],
     "photons": [["photon-trace", S2, "--frame", "10", "--photons", "20k", "-o", "p.photons"]],
     "help": [[tool, "--help"] for tool in ("photon-trace", "irradcache-build", "frame-render", "scene-plan")],
     "nearest": [["tests/nearest", "20000", "2000", "1"]],
@@ -84,7 +107,9 @@ def instructions(logs):
 
 def planned(bench, variables):
     """What the preset decides about the scene at its usual size: words of all commands, without the keys in names."""
-    wish = {name: value for name, value in variables.items() if name not in SMALL or name == "FILTER"} | {"SIZE": "320x180"}
+    wish = {name: value for name, value in variables.items() if name not in SMALL or name == "FILTER"} | {
+        "SIZE": "320x180"
+    }
     with tempfile.TemporaryDirectory() as out:
         pipeline.run_make(bench.project, bench.bin, out, "plan", **wish)
         words = re.findall(r"^\S+: words := .*$", (Path(out) / "plan.mk").read_text(), re.M)
@@ -93,17 +118,33 @@ def planned(bench, variables):
 
 def inputs(bench, name, folder):
     """Scenes that a canary makes; the variables with their places."""
-    variables = {k: str(bench.project / v) if k == "SCENE" and v.startswith("pipelines/") else v for k, v in MADE[name].items()}
+    variables = {
+        k: str(bench.project / v) if k == "SCENE" and v.startswith("pipelines/") else v for k, v in MADE[name].items()
+    }
     if variables["SCENE"] == "pan.glb":
         variables["SCENE"] = str(folder / "pan.glb")
-        bench.run(["python3", "-B", bench.project / "pipelines" / "scenes" / "make_walkthrough.py", "pan", bench.project / S3, variables["SCENE"]])
+        bench.run(
+            [
+                "python3",
+                "-B",
+                bench.project / "pipelines" / "scenes" / "make_walkthrough.py",
+                "pan",
+                bench.project / S3,
+                variables["SCENE"],
+            ]
+        )
     if "VOLUME" in variables:
         variables["VOLUME"] = str(folder / variables["VOLUME"])
         make_vdb = bench.programs.parent / "make-vdb"
         if not make_vdb.exists():
             raise Missing("built without volumes")
         for frame in range(2):
-            ball = [max(0.0, 1 - math.dist((7.5, 5 + frame, 7.5), (x, y, z)) / 5) for x in range(16) for y in range(16) for z in range(16)]
+            ball = [
+                max(0.0, 1 - math.dist((7.5, 5 + frame, 7.5), (x, y, z)) / 5)
+                for x in range(16)
+                for y in range(16)
+                for z in range(16)
+            ]
             subprocess.run([make_vdb, folder / f"smoke_{frame:04d}.vdb", *map(str, (16, 16, 16, .06, -.45, .5, -.45))],
                            input=struct.pack(f"<{len(ball)}f", *ball), check=True)
     return variables
@@ -121,11 +162,21 @@ def run(bench, name):
         if name in MADE:
             variables = inputs(bench, name, folder)
             made["plan"] = planned(bench, variables)
-            os.environ |= {"TEMPOLUX_THREADS": "1", "UNCOUNTED": "tempolux-info" + ("" if name == "still" else " scene-plan")}   # its pilots are slow
+            os.environ |= {
+                "TEMPOLUX_THREADS": "1",
+                "UNCOUNTED": "tempolux-info" + ("" if name == "still" else " scene-plan"),
+            }  # its pilots are slow
             pipeline.run_make(bench.project, bench.bin, out, "demo", RUN=" ".join(counted), **variables)
         for command in TYPED.get(name, ()):
             tool = bench.programs / command[0][6:] if command[0].startswith("tests/") else bench.bin / command[0]
-            words = [str(bench.project / w) if w.startswith("pipelines/") else str(out / w) if re.fullmatch(r"\w+\.(exr|photons)", w) else w for w in command[1:]]
+            words = [
+                (
+                    str(bench.project / w)
+                    if w.startswith("pipelines/")
+                    else str(out / w) if re.fullmatch(r"\w+\.(exr|photons)", w) else w
+                )
+                for w in command[1:]
+            ]
             bench.run([*counted, tool, *words], {"TEMPOLUX_THREADS": "1"})
         return {"digests": made | digests(bench, out), "instructions": instructions(logs)}
     finally:
@@ -152,9 +203,11 @@ def differences(row, ran, stamp_now):
     for name, now in ran.items():
         was = row["canary"].get(name)
         if not was:
-            words.append(f"{name}: has no canary from when it was measured")
+            words.append(f"{name}: no run of the canary was stored when the part was measured")
             continue
-        words += [f"{name}: {part} differ" for part in now["digests"] if was["digests"].get(part) != now["digests"][part]]
+        words += [
+            f"{name}: {part} differ" for part in now["digests"] if was["digests"].get(part) != now["digests"][part]
+        ]
         if row["compiler"] != stamp_now:
             continue
         for tool, count in now["instructions"].items():

@@ -4,6 +4,7 @@ reference in halves.
 A point is (CPU seconds of a frame out of a range of 24, seen error). What the range shares (light that stands, the plan) is divided
 by its frames; start and import of other renderers are left out. One part of the evidence for each scene.
 """
+
 import math
 import re
 import statistics
@@ -24,10 +25,21 @@ from shipped import YARDSTICK, Side
 
 RANGE = 24
 AUXILIARY = ("RGBA", "albedo", "N")
-SETTINGS = (("draft", {"QUALITY": "draft"}), ("error .032", {"ERROR": ".032"}), ("final", {}), ("error .008", {"ERROR": ".008"}), ("error .004", {"ERROR": ".004"}))
+SETTINGS = (
+    ("draft", {"QUALITY": "draft"}),
+    ("error .032", {"ERROR": ".032"}),
+    ("final", {}),
+    ("error .008", {"ERROR": ".008"}),
+    ("error .004", {"ERROR": ".004"}),
+)
 PATHS = (4, 16, 64, 256)
-PEERS = (("Cycles", "cycles", False, (16, 64, 256)), ("Cycles + OIDN", "cycles", True, (4, 8, 16, 32, 64)), ("LuxCore + OIDN", "luxcore", True, (4, 16, 64)),
-         ("LuxCore PhotonGI + OIDN", "luxcore", True, (16,)), ("Mitsuba + OIDN", "mitsuba", True, (4, 16, 64)))
+PEERS = (
+    ("Cycles", "cycles", False, (16, 64, 256)),
+    ("Cycles + OIDN", "cycles", True, (4, 8, 16, 32, 64)),
+    ("LuxCore + OIDN", "luxcore", True, (4, 16, 64)),
+    ("LuxCore PhotonGI + OIDN", "luxcore", True, (16,)),
+    ("Mitsuba + OIDN", "mitsuba", True, (4, 16, 64)),
+)
 
 
 def shared_out(out, wish, bench):
@@ -68,16 +80,28 @@ class Curves:
     def chain(self, variables, seed, channels=AUXILIARY):
         """(picture, CPU seconds)"""
         out = self.side.folder
-        image, whole, stages, _ = self.side.chain(seed, channels=channels, variables={k: v for k, v in variables.items() if k != "QUALITY"},
-                                                  quality=variables.get("QUALITY", "final"), leave=True)
-        wish = self.side.wish(self.first_of_range(), channels, variables.get("QUALITY", "final"), {k: v for k, v in variables.items() if k != "QUALITY"})
+        image, whole, stages, _ = self.side.chain(
+            seed,
+            channels=channels,
+            variables={k: v for k, v in variables.items() if k != "QUALITY"},
+            quality=variables.get("QUALITY", "final"),
+            leave=True,
+        )
+        wish = self.side.wish(
+            self.first_of_range(),
+            channels,
+            variables.get("QUALITY", "final"),
+            {k: v for k, v in variables.items() if k != "QUALITY"},
+        )
         return image, shared_out(out, wish, self.bench) + (whole - sum(stages.values())) / RANGE
 
     def reference(self, least):
         """Halves of our own paths, with what only light paths find."""
         options = [*YARDSTICK, "--light-paths", "20M"]
         reference = Reference(self.bench, self.case, self.size, options)
-        reference.until(lambda a, b: Seen(pixels.planes(a), pixels.planes(b)).halves_differ() < least, self.reference_cpu)
+        reference.until(
+            lambda a, b: Seen(pixels.planes(a), pixels.planes(b)).halves_differ() < least, self.reference_cpu
+        )
         return [pixels.planes(half) for half in reference.halves]
 
     def ours(self):
@@ -128,8 +152,15 @@ class Curves:
 
     def peer(self, label, name, clean, samples):
         key = f"{label}: "
-        scene = {"scene": str(self.case.file), "size": self.size, "light_units": "spec" if "spec" in self.case.shared else "raw", "camera": self.case.camera,
-                 "world": str(self.case.environment) if self.case.environment else None, "sky": self.sky(), "smoke": self.smoke()}
+        scene = {
+            "scene": str(self.case.file),
+            "size": self.size,
+            "light_units": "spec" if "spec" in self.case.shared else "raw",
+            "camera": self.case.camera,
+            "world": str(self.case.environment) if self.case.environment else None,
+            "sky": self.sky(),
+            "smoke": self.smoke(),
+        }
         opened = {}
 
         def open_peer():
@@ -146,7 +177,9 @@ class Curves:
         def frame(n, seed, clean, output):
             ask = open_peer().ask
             if name == "cycles":
-                cpu = ask({"frame": self.case.frame, "samples": n, "seed": seed, "denoise": clean, "output": f"{output}.exr"})
+                cpu = ask(
+                    {"frame": self.case.frame, "samples": n, "seed": seed, "denoise": clean, "output": f"{output}.exr"}
+                )
                 return planes_of(f"{output}.exr"), cpu
             cpu = ask({"samples": n, "seed": seed, "photongi": "PhotonGI" in label, "output": output})
             if not clean:
@@ -155,7 +188,9 @@ class Curves:
             return planes, cpu + more
 
         def halves():
-            files = [self.bench.out / "every" / "reference" / f"{self.case.name}-{self.size}-{name}_{h}.pfm" for h in "ab"]
+            files = [
+                self.bench.out / "every" / "reference" / f"{self.case.name}-{self.size}-{name}_{h}.pfm" for h in "ab"
+            ]
             if not all(file.exists() for file in files):
                 for i, file in enumerate(files):
                     planes, cpu = frame(16, 900 + i, False, self.stem)
@@ -190,15 +225,29 @@ class Curves:
         words = dict(zip(self.case.shared[::2], self.case.shared[1::2]))
         if "--volume" not in words:
             return None
-        return {"file": str(words["--volume"]).replace("####", f"{self.case.frame:04d}"), "sigma_t": float(words["--sigma-t"]), "albedo": [float(v) for v in words["--albedo"].split(",")]}
+        return {
+            "file": str(words["--volume"]).replace("####", f"{self.case.frame:04d}"),
+            "sigma_t": float(words["--sigma-t"]),
+            "albedo": [float(v) for v in words["--albedo"].split(",")],
+        }
 
     # ---- both
 
     def add(self, label, points):
-        mean = {setting: (statistics.mean(p[0] for p in found), math.sqrt(statistics.mean(p[1] ** 2 for p in found)), spread([p[1] for p in found]), len(found))
-                for setting, found in points.items()}
+        mean = {
+            setting: (
+                statistics.mean(p[0] for p in found),
+                math.sqrt(statistics.mean(p[1] ** 2 for p in found)),
+                spread([p[1] for p in found]),
+                len(found),
+            )
+            for setting, found in points.items()
+        }
         self.shown[label] = mean
-        self.rows += [[label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", quantity(points[setting][0][2]), seeds] for setting, (cpu, error, plus, seeds) in mean.items()]
+        self.rows += [
+            [label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", quantity(points[setting][0][2]), seeds]
+            for setting, (cpu, error, plus, seeds) in mean.items()
+        ]
 
 
 def reference(bench, name):
@@ -210,8 +259,27 @@ def reference(bench, name):
 
     def render(*light_paths):
         out = bench.out / "tmp" / "complete.exr"
-        stats = bench.tool("frame-render", case.file, *case.options(), *YARDSTICK, "--size", "160x90", "--spp", samples, "--halves", *light_paths, "--audit", 1,
-                           "--channels", "RGBA", "layers", "--compression", "none", "-o", out)
+        stats = bench.tool(
+            "frame-render",
+            case.file,
+            *case.options(),
+            *YARDSTICK,
+            "--size",
+            "160x90",
+            "--spp",
+            samples,
+            "--halves",
+            *light_paths,
+            "--audit",
+            1,
+            "--channels",
+            "RGBA",
+            "layers",
+            "--compression",
+            "none",
+            "-o",
+            out,
+        )
         halves = [exr.read(out.with_name(f"complete_{h}.exr")) for h in "ab"]
         return {"said": {k: v for k, v in stats["results"].items() if k.startswith("audit.")}, "cpu": stats["cpu_s"],
                 "halves": 2 ** 0.5 * Seen(*(pixels.planes(h) for h in halves)).half_error()}
@@ -226,11 +294,18 @@ def reference(bench, name):
             worst = max(worst, abs(value) / error)
         tiles += f"audit.{layer}.worst_tile" in whole["said"]
         rows.append([layer, *cells, "beyond" if f"audit.{layer}.worst_tile" in whole["said"] else "within"])
-    return figure(f"{name}: a reference that lacks nothing", "each layer within 3 errors of photons alone, also by tile; halves differ by less than 4 codes",
-                  ["layer", "paths over photons - 1, % of the picture", "paths and light, the same", "4 x 4 tiles: 3 errors"], rows,
-                  worst <= 3 and tiles == 0 and whole["halves"] < 4,
-                  [f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."],
-                  f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes", min(3 / max(worst, 0.1), 4 / whole["halves"]))
+    return figure(
+        f"{name}: a reference that lacks nothing",
+        "each layer within 3 errors of photons alone, also by tile; halves differ by less than 4 codes",
+        ["layer", "paths over photons - 1, % of the picture", "paths and light, the same", "4 x 4 tiles: 3 errors"],
+        rows,
+        worst <= 3 and tiles == 0 and whole["halves"] < 4,
+        [
+            f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."
+        ],
+        f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes",
+        min(3 / max(worst, 0.1), 4 / whole["halves"]),
+    )
 
 
 def spread(values):
@@ -262,8 +337,28 @@ def measure(bench, name, size="320x180"):
         more = {"equal_error": ratio}
         said += f"; Cycles + OIDN needs {'' if inside else '~'}{quantity(needed)}: {quantity(ratio)}x"
     picture = bench.results / f"curve-{label}.svg"
-    picture.write_text(chart(f"{name}, {size}: seen error against CPU seconds of a frame", "CPU s a frame", "codes",
-                             [(label, [(c, e) for c, e, *_ in points.values()]) for label, points in curves.shown.items()], log=True))
-    notes = [f"![curves]({picture.name})", f"Frame {case.frame}, {size}, out of a range of {RANGE}; `~`: beyond the measured curve.", *notes]
-    return figure(f"{label}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"], curves.rows,
-                  None if ratio is None else ratio > 1, notes, said, ratio, **more)
+    picture.write_text(
+        chart(
+            f"{name}, {size}: seen error against CPU seconds of a frame",
+            "CPU s a frame",
+            "codes",
+            [(label, [(c, e) for c, e, *_ in points.values()]) for label, points in curves.shown.items()],
+            log=True,
+        )
+    )
+    notes = [
+        f"![curves]({picture.name})",
+        f"Frame {case.frame}, {size}, out of a range of {RANGE}; `~`: beyond the measured curve.",
+        *notes,
+    ]
+    return figure(
+        f"{label}: final beside Cycles 5 with OIDN",
+        "less CPU at equal seen error",
+        ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"],
+        curves.rows,
+        None if ratio is None else ratio > 1,
+        notes,
+        said,
+        ratio,
+        **more,
+    )

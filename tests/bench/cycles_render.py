@@ -9,10 +9,13 @@ Smoke: grid `density`, placed as the glTF is; extinction of density 1 in 1/m; al
 import json
 import struct
 import sys
+from pathlib import Path
 
 import bpy
-import mathutils
 import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "peers"))
+from smoke_of_cycles import place_smoke
 
 numpy.bool = bool      # a name that Blender 3.4's importer uses and Debian 12's numpy 1.24 has dropped
 scene_file, frame, size, samples, seed, sky, lights, output, *smoke = sys.argv[sys.argv.index("--") + 1:]
@@ -43,31 +46,11 @@ def be_as_the_file_says(file):
                 material.node_tree.links.new(matte.outputs["BSDF"], link.to_socket)
 
 
-def place_smoke(file, sigma_t, albedo):
-    bpy.ops.object.volume_import(filepath=file)
-    volume = bpy.context.object
-    volume.matrix_world = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))   # Blender's Z is up, glTF's Y
-    material = bpy.data.materials.new("Smoke")
-    material.use_nodes = True
-    nodes, link = material.node_tree.nodes, material.node_tree.links.new
-    nodes.clear()
-    density, scaled, both = (nodes.new(f"ShaderNode{kind}") for kind in ("Attribute", "Math", "AddShader"))
-    density.attribute_name, scaled.operation = "density", "MULTIPLY"
-    link(density.outputs["Fac"], scaled.inputs[0])
-    scaled.inputs[1].default_value = float(sigma_t)
-    for i, kind in enumerate(("VolumeScatter", "VolumeAbsorption")):                    # colour x density, and (1 - colour) x density
-        part = nodes.new(f"ShaderNode{kind}")
-        part.inputs["Color"].default_value = [*map(float, albedo.split(",")), 1]
-        link(scaled.outputs[0], part.inputs["Density"])
-        link(part.outputs[0], both.inputs[i])
-    link(both.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Volume"])
-    volume.data.materials.append(material)
-
-
 if not as_it_is:
     be_as_the_file_says(scene_file)
 if smoke:
-    place_smoke(*smoke)
+    file, sigma_t, albedo = smoke
+    place_smoke(file, float(sigma_t), [*map(float, albedo.split(","))])
 scene = bpy.context.scene
 scene.camera = scene.camera or next(o for o in scene.objects if o.type == "CAMERA")
 if not as_it_is:

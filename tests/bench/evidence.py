@@ -32,13 +32,17 @@ ORDERS = ("list", "canaries", "accept", "page")
 def options():
     project = Path(__file__).resolve().parents[2]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=project / "build" / "release", help="build folder [build/release]")
+    parser.add_argument(
+        "--build", type=Path, default=project / "build" / "release", help="build folder [build/release]"
+    )
     parser.add_argument("--out", type=Path, default=project / "out" / "bench", help="references, steps [out/bench]")
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of results/ [docs]")
     parser.add_argument("--parts", default="", help=f"names by comma, with * and ?; or {', '.join(ORDERS)}")
     parser.add_argument("--hours", type=float, default=0, help="wall time; 0: no limit")
-    parser.add_argument("--small", action="store_true", help="short settings of long parts, said on their rows: to try a part")
+    parser.add_argument(
+        "--small", action="store_true", help="short settings of long parts, said on their rows: to try a part"
+    )
     parser.add_argument("--tiny", action="store_true", help="tiny sizes: does every script still run?")
     return project, parser.parse_args()
 
@@ -82,7 +86,9 @@ def chosen(text):
 def listed(rows):
     print(f"{'part':20} {'CPU s':>6} {'canary':18} {'scenes':26} judges")
     for part in PARTS:
-        print(f"{part.name:20} {cost(part, rows.get(part.name)):6.0f} {' '.join(part.canaries):18} {part.scenes:26} {part.judges}")
+        print(
+            f"{part.name:20} {cost(part, rows.get(part.name)):6.0f} {' '.join(part.canaries):18} {part.scenes:26} {part.judges}"
+        )
 
 
 # ---- canaries
@@ -118,8 +124,12 @@ def accept(bench, rows, commit):
     ran = canaries.run_all(bench, sorted({name for part in PARTS if part.name in known for name in part.canaries}))
     for part in PARTS:
         if part.name in known:
-            row = known[part.name] | {"canary": {name: ran[name] for name in part.canaries if name in ran}, "stale": None,
-                                      "compiler": canaries.stamp(bench), "accepted": commit}
+            row = known[part.name] | {
+                "canary": {name: ran[name] for name in part.canaries if name in ran},
+                "stale": None,
+                "compiler": canaries.stamp(bench),
+                "accepted": commit,
+            }
             rows.put(part.name, row)
 
 
@@ -132,11 +142,23 @@ def measure(bench, part, rows, commit, deadline):
     bench.walk = bench.step("walk", lambda: walk_speed(bench))
     row = part.run(bench)
     ended = os.times()
-    cpu = sum(getattr(ended, kind) - getattr(began, kind) for kind in ("user", "system", "children_user", "children_system"))
-    row |= {"name": part.name, "section": part.section, "command": f"{COMMAND} PARTS={part.name}", "machine": machine(bench), "walk": bench.walk,
-            "load": round(os.getloadavg()[0], 1), "commit": commit, "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime()),
-            "cpu_s": round(cpu + bench.step.spent_before, 1), "compiler": canaries.stamp(bench), "stale": None,
-            "canary": canaries.run_all(bench, part.canaries)}
+    cpu = sum(
+        getattr(ended, kind) - getattr(began, kind) for kind in ("user", "system", "children_user", "children_system")
+    )
+    row |= {
+        "name": part.name,
+        "section": part.section,
+        "command": f"{COMMAND} PARTS={part.name}",
+        "machine": machine(bench),
+        "walk": bench.walk,
+        "load": round(os.getloadavg()[0], 1),
+        "commit": commit,
+        "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime()),
+        "cpu_s": round(cpu + bench.step.spent_before, 1),
+        "compiler": canaries.stamp(bench),
+        "stale": None,
+        "canary": canaries.run_all(bench, part.canaries),
+    }
     rows.put(part.name, row)
     bench.step.forget()
     print(results_page.told(row), flush=True)
@@ -161,7 +183,11 @@ def main():
     wanted.sort(key=lambda part: cost(part, rows.get(part.name)))
     if wanted:
         seconds = [cost(part, rows.get(part.name)) for part in wanted]
-        print(f"{len(wanted)} parts, about {sum(seconds):.0f} CPU s: " + ", ".join(f"{p.name} {s:.0f}" for p, s in zip(wanted, seconds)), flush=True)
+        print(
+            f"{len(wanted)} parts, about {sum(seconds):.0f} CPU s: "
+            + ", ".join(f"{p.name} {s:.0f}" for p, s in zip(wanted, seconds)),
+            flush=True,
+        )
     left_out = {}
     for part in wanted:
         print(f"== {part.name}: {part.judges}", flush=True)

@@ -6,6 +6,7 @@
 run.sh starts it with make's variables. The frame is the first of REPORT_FRAMES. Curves: three settings and path tracing of 4, 16, 64 samples, two
 seeds a point, each judged against halves of a path-traced reference that grows to REPORT_CPU seconds (300).
 """
+
 import base64
 import html
 import os
@@ -43,7 +44,15 @@ def the_case(environ):
     frame = int(re.match(r"\d+", environ["FRAMES"] if asked == "ends" else asked).group())
     shared = [word for name, option in OPTIONS.items() if environ.get(name) for word in (option, environ[name])]
     shared += environ.get("VOLUME_OPTIONS", "").split() + environ.get("TIME", "").split()
-    return Case("own", Path(environ["SCENE"]), frame, "own", environ.get("CAMERA", "auto"), tuple(shared), Path(environ["ENVIRONMENT"]) if environ.get("ENVIRONMENT") else None)
+    return Case(
+        "own",
+        Path(environ["SCENE"]),
+        frame,
+        "own",
+        environ.get("CAMERA", "auto"),
+        tuple(shared),
+        Path(environ["ENVIRONMENT"]) if environ.get("ENVIRONMENT") else None,
+    )
 
 
 class Own(Curves):
@@ -67,7 +76,12 @@ def picture(bench, planes, exposure, width, height):
 def of_markdown(text):
     """A table as HTML."""
     lines = [[html.escape(cell.strip()) for cell in line.strip("|").split("|")] for line in text.strip().splitlines()]
-    rows = ["<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in line) + "</tr>" for i, line in enumerate(lines) if i != 1 for tag in ("th" if i == 0 else "td",)]
+    rows = [
+        "<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in line) + "</tr>"
+        for i, line in enumerate(lines)
+        if i != 1
+        for tag in ("th" if i == 0 else "td",)
+    ]
     return "<table>" + "".join(rows) + "</table>"
 
 
@@ -96,7 +110,14 @@ def main():
             shown, stages = planes, pipeline.cpu_of(own.side.folder)
             said = {k: v for s in pipeline.stats_of(own.side.folder, ("frames",)) for k, v in s["results"].items()}
     own.add("this chain", points)
-    paths = {n: [(image_cpu[1], Seen(*halves).error(pixels.planes(image_cpu[0])), None) for seed in (1, 2) for image_cpu in (own.paths(n, seed),)] for n in (4, 16, 64)}
+    paths = {
+        n: [
+            (image_cpu[1], Seen(*halves).error(pixels.planes(image_cpu[0])), None)
+            for seed in (1, 2)
+            for image_cpu in (own.paths(n, seed),)
+        ]
+        for n in (4, 16, 64)
+    }
     own.add("path tracing", paths)
     seen = Seen(*halves)
     cpu, error, plus, _ = own.shown["this chain"]["final"]
@@ -104,25 +125,68 @@ def main():
     frames = range(own.case.frame, own.case.frame + 2)
     calm = steadiness(own, frames)
     reference = [[(p + q) / 2 for p, q in zip(*pair)] for pair in zip(*halves)]
-    svg = chart(f"Seen error against CPU seconds of a frame, {own.size}", "CPU s a frame", "codes", [(l, [(c, e) for c, e, *_ in p.values()]) for l, p in own.shown.items()], log=True)
+    svg = chart(
+        f"Seen error against CPU seconds of a frame, {own.size}",
+        "CPU s a frame",
+        "codes",
+        [(l, [(c, e) for c, e, *_ in p.values()]) for l, p in own.shown.items()],
+        log=True,
+    )
     wish = own.side.wish(environ["FRAMES"])
-    command = "make -f Makefile.example " + " ".join(f"{k}={shlex.quote(str(v))}" for k, v in wish.items() if v not in (None, "") and k not in ("CHANNELS", "QUALITY"))
-    account = table(["frame " + str(own.case.frame), "the frame says", "measured"],
-                    [["noise, codes", quantity(said.get("noise.codes")), f"{error:.2f} ± {plus:.2f} (all error)"],
-                     *[[f"bias of layer {layer}", f"{100 * said[f'audit.{layer}']:+.1f} ± {100 * said[f'audit.{layer}_error']:.1f} % of the picture", ""] for layer in pixels.LAYERS if f"audit.{layer}" in said]])
-    converged = "" if seen.halves_differ() < 2 * error else f" The reference's own noise is {seen.halves_differ():.2f} codes: it is not converged, give it more by REPORT_CPU."
-    parts = [f"<h1>{html.escape(own.case.file.name)}</h1><p>Frame {own.case.frame}, {own.size}: {quantity(cpu)} CPU s, seen error {error:.2f} codes. Path tracing takes "
-             f"{'' if inside else 'about '}{quantity(needed)} CPU s for this error.{converged}</p>",
-             f"<h2>Final, and the reference</h2><div class=both><img src='{picture(bench, reference, seen.exposure, own.width, own.height)}' alt=reference>"
-             f"<img id=o class=over src='{picture(bench, shown, seen.exposure, own.width, own.height)}' alt=final></div><input id=s type=range min=0 max=100 value=50 aria-label='left: final, right: reference'>",
-             "<h2>Curves</h2>", svg, of_markdown(table(["side", "setting", "CPU s a frame", "seen error, codes", "seeds"], [row[:4] + row[5:] for row in own.rows])),
-             "<h2>The frame's own account</h2>", of_markdown(account),
-             "<h2>Steadiness</h2>", of_markdown(table(["frames", *steady.HEADER], [[f"{frames[0]}, {frames[-1]}", *steady.cells(calm)]])),
-             "<h2>Where CPU seconds go</h2>", of_markdown(table(["stage", "CPU s"], [[stage, quantity(value)] for stage, value in stages.items()])),
-             "<h2>Commands</h2>", *(f"<pre>{html.escape(command + more)}</pre>" for more in (" QUALITY=draft", "", " ERROR=.008"))]
+    command = "make -f Makefile.example " + " ".join(
+        f"{k}={shlex.quote(str(v))}"
+        for k, v in wish.items()
+        if v not in (None, "") and k not in ("CHANNELS", "QUALITY")
+    )
+    account = table(
+        ["frame " + str(own.case.frame), "the frame says", "measured"],
+        [
+            ["noise, codes", quantity(said.get("noise.codes")), f"{error:.2f} ± {plus:.2f} (all error)"],
+            *[
+                [
+                    f"bias of layer {layer}",
+                    f"{100 * said[f'audit.{layer}']:+.1f} ± {100 * said[f'audit.{layer}_error']:.1f} % of the picture",
+                    "",
+                ]
+                for layer in pixels.LAYERS
+                if f"audit.{layer}" in said
+            ],
+        ],
+    )
+    converged = (
+        ""
+        if seen.halves_differ() < 2 * error
+        else f" The reference's own noise is {seen.halves_differ():.2f} codes: it is not converged, give it more by REPORT_CPU."
+    )
+    parts = [
+        f"<h1>{html.escape(own.case.file.name)}</h1><p>Frame {own.case.frame}, {own.size}: {quantity(cpu)} CPU s, seen error {error:.2f} codes. Path tracing takes "
+        f"{'' if inside else 'about '}{quantity(needed)} CPU s for this error.{converged}</p>",
+        f"<h2>Final, and the reference</h2><div class=both><img src='{picture(bench, reference, seen.exposure, own.width, own.height)}' alt=reference>"
+        f"<img id=o class=over src='{picture(bench, shown, seen.exposure, own.width, own.height)}' alt=final></div><input id=s type=range min=0 max=100 value=50 aria-label='left: final, right: reference'>",
+        "<h2>Curves</h2>",
+        svg,
+        of_markdown(
+            table(
+                ["side", "setting", "CPU s a frame", "seen error, codes", "seeds"],
+                [row[:4] + row[5:] for row in own.rows],
+            )
+        ),
+        "<h2>The frame's own account</h2>",
+        of_markdown(account),
+        "<h2>Steadiness</h2>",
+        of_markdown(table(["frames", *steady.HEADER], [[f"{frames[0]}, {frames[-1]}", *steady.cells(calm)]])),
+        "<h2>Where CPU seconds go</h2>",
+        of_markdown(table(["stage", "CPU s"], [[stage, quantity(value)] for stage, value in stages.items()])),
+        "<h2>Commands</h2>",
+        *(f"<pre>{html.escape(command + more)}</pre>" for more in (" QUALITY=draft", "", " ERROR=.008")),
+    ]
     page = out / "report" / "scene.html"
     policy = "<meta http-equiv=Content-Security-Policy content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
-    page.write_text(f"<!doctype html><meta charset=utf-8>{policy}<title>{html.escape(own.case.file.name)}</title><style>{STYLE}</style>" + "\n".join(parts) + f"<script>{SCRIPT}</script>\n")
+    page.write_text(
+        f"<!doctype html><meta charset=utf-8>{policy}<title>{html.escape(own.case.file.name)}</title><style>{STYLE}</style>"
+        + "\n".join(parts)
+        + f"<script>{SCRIPT}</script>\n"
+    )
     shutil.rmtree(own.side.folder, ignore_errors=True)
     print(f"look at {page}: frames, curves, steadiness, account")
 

@@ -1,4 +1,5 @@
 """Other renderers, where `make peers` has put them: each is a process that gets jobs and says what they cost (peers/*.py)."""
+
 import array
 import json
 import os
@@ -26,7 +27,13 @@ class Peer:
     def __init__(self, bench, name, first):
         python = folder_of(bench, name) / "bin" / "python"
         self.name, self.log = name, open(bench.out / "tmp" / f"{name}.log", "w")
-        self.process = subprocess.Popen([python, HERE / f"{name}_frames.py"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, text=True)
+        self.process = subprocess.Popen(
+            [python, HERE / f"{name}_frames.py"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.log,
+            text=True,
+        )
         self.preparation = self.ask(first)
 
     def ask(self, job):
@@ -62,7 +69,11 @@ def write_pfm(path, width, height, planes):
 
 
 def planes_of(file):
-    return [list(image.channels[c]) for image in [exr.read(file)] for c in "RGB"] if str(file).endswith(".exr") else read_pfm(file)[2]
+    return (
+        [list(image.channels[c]) for image in [exr.read(file)] for c in "RGB"]
+        if str(file).endswith(".exr")
+        else read_pfm(file)[2]
+    )
 
 
 def denoised(bench, stem):
@@ -71,16 +82,27 @@ def denoised(bench, stem):
     program.chmod(0o755)
     out = f"{stem}.clean.pfm"
     before = os.times()
-    bench.run([program, "--hdr", f"{stem}.pfm", "--alb", f"{stem}.albedo.pfm", "--nrm", f"{stem}.normal.pfm", "-o", out],
-              {"LD_LIBRARY_PATH": str(program.parents[1] / "lib")})
+    bench.run(
+        [program, "--hdr", f"{stem}.pfm", "--alb", f"{stem}.albedo.pfm", "--nrm", f"{stem}.normal.pfm", "-o", out],
+        {"LD_LIBRARY_PATH": str(program.parents[1] / "lib")},
+    )
     after = os.times()
     return read_pfm(out)[2], after.children_user + after.children_system - before.children_user - before.children_system
 
 
 def for_denoising(stem, image):
     """Writes our picture with channels albedo and N as the three files of denoised()."""
-    for end, names in (("", "RGB"), (".albedo", ("albedo.R", "albedo.G", "albedo.B")), (".normal", ("N.X", "N.Y", "N.Z"))):
-        write_pfm(f"{stem}{end}.pfm", image.width, image.height, [[v if v == v else 0.0 for v in image.channels[c]] for c in names])
+    for end, names in (
+        ("", "RGB"),
+        (".albedo", ("albedo.R", "albedo.G", "albedo.B")),
+        (".normal", ("N.X", "N.Y", "N.Z")),
+    ):
+        write_pfm(
+            f"{stem}{end}.pfm",
+            image.width,
+            image.height,
+            [[v if v == v else 0.0 for v in image.channels[c]] for c in names],
+        )
 
 
 def flip(bench, reference, tests, exposure, width, height):

@@ -43,11 +43,11 @@ def worst_first(row):
 def page_of(row):
     """docs/results/NAME.md"""
     text = (f"# {row['title']}\n\n`{row['command']}` · {row['machine']} · load {row['load']} · {row['date']}\n\n"
-            f"Asked: {row['asked']}. {verdict(row['met'])}: {measured(row)}.\n\n")
+            f"The project asks for: {row['asked']}. This part measured: {measured(row)}. Verdict: {verdict(row['met'])}.\n\n")
     if row.get("paper"):
-        text += f"The paper: {row['paper']}.\n\n"
+        text += f"The paper reports: {row['paper']}.\n\n"
     if row.get("stale"):
-        text += f"Stale since {row['stale']['since']}: {'; '.join(row['stale']['what'])}.\n\n"
+        text += f"This page is stale since commit {row['stale']['since']}: {'; '.join(row['stale']['what'])}.\n\n"
     return text + table(row["header"], row["rows"]) + "".join(f"\n{note}\n" for note in row["notes"])
 
 

@@ -1,4 +1,5 @@
 """Steadiness of our frames and of Cycles' denoised ones on both sides of a segment's border: a part of the evidence for each scene."""
+
 import re
 import shutil
 from pathlib import Path
@@ -28,8 +29,16 @@ def frames_of(case):
 def ours(side, frames, seed):
     """R, G, B planes of frames made as one range."""
     shutil.rmtree(side.folder, ignore_errors=True)
-    cpu = side.spend(pipeline.command(side.bench.project, side.bench.bin, side.folder, "demo", RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}",
-                                      **side.wish(f"{frames[0]}-{frames[-1]}", ("RGBA",))))
+    cpu = side.spend(
+        pipeline.command(
+            side.bench.project,
+            side.bench.bin,
+            side.folder,
+            "demo",
+            RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}",
+            **side.wish(f"{frames[0]}-{frames[-1]}", ("RGBA",)),
+        )
+    )
     pictures = [pixels.planes(exr.read(pipeline.frame_of(side.folder, f))) for f in frames]
     return pictures, cpu / len(frames)
 
@@ -37,8 +46,25 @@ def ours(side, frames, seed):
 def flows(side, frames):
     """Motion of each frame to the next."""
     out = str(side.bench.out / "tmp" / "flow.####.exr")
-    side.bench.tool("frame-render", side.case.file, "--frames", f"{frames[0]}-{frames[-1]}", *side.case.options()[2:], "--integrator", "path", "--spp", 1, "--size", side.size,
-                    "--channels", "motion", "--compression", "none", "-o", out)
+    side.bench.tool(
+        "frame-render",
+        side.case.file,
+        "--frames",
+        f"{frames[0]}-{frames[-1]}",
+        *side.case.options()[2:],
+        "--integrator",
+        "path",
+        "--spp",
+        1,
+        "--size",
+        side.size,
+        "--channels",
+        "motion",
+        "--compression",
+        "none",
+        "-o",
+        out,
+    )
     images = [exr.read(out.replace("####", f"{f:04d}")) for f in frames]
     return [[image.channels[f"forward.{c}"] for c in "uv"] for image in images]
 
@@ -46,8 +72,18 @@ def flows(side, frames):
 def cycles(bench, case, size, frames, seeds):
     """R, G, B planes of frames by Cycles with OIDN; `seeds`: of each frame."""
     sky = re.search(r"--environment ([\d.]+),([\d.]+),([\d.]+)", " ".join(map(str, case.shared)))
-    peer = Peer(bench, "cycles", {"scene": str(case.file), "size": size, "light_units": "spec" if "spec" in case.shared else "raw", "camera": case.camera,
-                                  "world": str(case.environment) if case.environment else None, "sky": [float(v) for v in sky.groups()] if sky else None})
+    peer = Peer(
+        bench,
+        "cycles",
+        {
+            "scene": str(case.file),
+            "size": size,
+            "light_units": "spec" if "spec" in case.shared else "raw",
+            "camera": case.camera,
+            "world": str(case.environment) if case.environment else None,
+            "sky": [float(v) for v in sky.groups()] if sky else None,
+        },
+    )
     out, pictures, cpu = bench.out / "tmp" / "steady-cycles.exr", [], 0.0
     try:
         for frame, seed in zip(frames, seeds):
@@ -73,18 +109,28 @@ def measure(bench, name):
     rows = {"final": bench.step("ours", lambda: judged(lambda run: ours(side, frames, 1 + run)))}
     notes = []
     try:
-        rows[f"Cycles {SAMPLES} + OIDN, a seed a frame"] = bench.step("cycles, own", lambda: judged(lambda run: cycles(bench, case, size, frames, [100 * run + f for f in frames])))
-        rows[f"Cycles {SAMPLES} + OIDN, one seed"] = bench.step("cycles, one", lambda: judged(lambda run: cycles(bench, case, size, frames, [1 + run] * len(frames))))
+        rows[f"Cycles {SAMPLES} + OIDN, a seed a frame"] = bench.step(
+            "cycles, own",
+            lambda: judged(lambda run: cycles(bench, case, size, frames, [100 * run + f for f in frames])),
+        )
+        rows[f"Cycles {SAMPLES} + OIDN, one seed"] = bench.step(
+            "cycles, one", lambda: judged(lambda run: cycles(bench, case, size, frames, [1 + run] * len(frames)))
+        )
     except Missing as reason:
         notes.append(f"Cycles: skipped: {reason}")
     mine, *theirs = (row["found"]["frame to frame"][2] for row in rows.values())
     ratio = min(theirs) / max(mine, 1e-3) if theirs else None
     cell = rows["final"]["found"]
     jump = max(cell["border over within"], default=0)
-    return figure(f"{name}: steadiness", "in boxes of 15 pixels less noise from frame to frame than Cycles with OIDN; border over within at most 2",
-                  ["side", "CPU s a frame", *steady.HEADER], [[side_, quantity(row["cpu"]), *steady.cells(row["found"])] for side_, row in rows.items()],
-                  None if ratio is None else ratio >= 1 and jump <= 2,
-                  [f"Frames {frames[0]} to {frames[-1]}, {size}, two seeds; codes.", *notes],
-                  f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, border over within {jump:.1f}" + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""),
-                  ratio and min(ratio, 2 / max(jump, 0.1)),
-                  **({"steadier": ratio} if ratio else {}))
+    return figure(
+        f"{name}: steadiness",
+        "in boxes of 15 pixels less noise from frame to frame than Cycles with OIDN; border over within at most 2",
+        ["side", "CPU s a frame", *steady.HEADER],
+        [[side_, quantity(row["cpu"]), *steady.cells(row["found"])] for side_, row in rows.items()],
+        None if ratio is None else ratio >= 1 and jump <= 2,
+        [f"Frames {frames[0]} to {frames[-1]}, {size}, two seeds; codes.", *notes],
+        f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, border over within {jump:.1f}"
+        + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""),
+        ratio and min(ratio, 2 / max(jump, 0.1)),
+        **({"steadier": ratio} if ratio else {}),
+    )

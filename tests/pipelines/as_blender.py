@@ -1,4 +1,5 @@
 """python as_blender.py SHOT.blend|- SCRIPT WORD...: what `blender -b SHOT.blend -P SCRIPT -- WORD...` does, with Blender as a Python module."""
+
 import runpy
 import sys
 

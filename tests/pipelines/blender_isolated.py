@@ -4,6 +4,7 @@
 
 A ball is seen as a whole, its outermost .06 aside. Cycles with caustics, no clamping, no denoising. Blender 4.2 or later.
 """
+
 import math
 import pathlib
 import subprocess
@@ -19,44 +20,76 @@ import exr  # noqa: E402
 import tempolux_addon  # noqa: E402
 
 LAMPS = {
-    "area": ("AREA", dict(energy=50, size=1)), "area, a disk": ("AREA", dict(energy=50, shape="DISK", size=1)),
-    "area, Normalize off": ("AREA", dict(energy=50, size=2, normalize=False)), "area, spread 140": ("AREA", dict(energy=50, size=1, spread=2.443)),
-    "point": ("POINT", dict(energy=50, shadow_soft_size=.2)), "point, Normalize off": ("POINT", dict(energy=50, shadow_soft_size=.2, normalize=False)),
+    "area": ("AREA", dict(energy=50, size=1)),
+    "area, a disk": ("AREA", dict(energy=50, shape="DISK", size=1)),
+    "area, Normalize off": ("AREA", dict(energy=50, size=2, normalize=False)),
+    "area, spread 140": ("AREA", dict(energy=50, size=1, spread=2.443)),
+    "point": ("POINT", dict(energy=50, shadow_soft_size=0.2)),
+    "point, Normalize off": ("POINT", dict(energy=50, shadow_soft_size=0.2, normalize=False)),
     "point, radius 0": ("POINT", dict(energy=50, shadow_soft_size=0)),
     "point, radius 0, Normalize off": ("POINT", dict(energy=50, shadow_soft_size=0, normalize=False)),
-    "point, 2700 K": ("POINT", dict(energy=50, shadow_soft_size=.2, use_temperature=True, temperature=2700)),
-    "spot, 2 stops": ("SPOT", dict(energy=10, exposure=2, shadow_soft_size=0)), "spot, radius .2": ("SPOT", dict(energy=50, shadow_soft_size=.2)),
+    "point, 2700 K": ("POINT", dict(energy=50, shadow_soft_size=0.2, use_temperature=True, temperature=2700)),
+    "spot, 2 stops": ("SPOT", dict(energy=10, exposure=2, shadow_soft_size=0)),
+    "spot, radius .2": ("SPOT", dict(energy=50, shadow_soft_size=0.2)),
     "spot, blend 1": ("SPOT", dict(energy=50, shadow_soft_size=0, spot_blend=1, spot_size=1)),
     "spot, blend 0": ("SPOT", dict(energy=50, shadow_soft_size=0, spot_blend=0, spot_size=1)),
-    "sun, 6 degrees": ("SUN", dict(energy=2, angle=.1)), "sun, Normalize off": ("SUN", dict(energy=2, angle=.1, normalize=False)),
+    "sun, 6 degrees": ("SUN", dict(energy=2, angle=0.1)),
+    "sun, Normalize off": ("SUN", dict(energy=2, angle=0.1, normalize=False)),
 }
 PRINCIPLED = "ShaderNodeBsdfPrincipled"
 BALLS = {
-    "Diffuse": ("ShaderNodeBsdfDiffuse", dict(Color=(.8, .6, .4, 1))), "Principled": (PRINCIPLED, {}),
-    "Principled, roughness 1": (PRINCIPLED, {"Roughness": 1}), "Principled, dark, roughness .9": (PRINCIPLED, {"Roughness": .9, "Base Color": (.05, .05, .05, 1)}),
-    "Principled, IOR 2, roughness .2": (PRINCIPLED, {"IOR": 2, "Roughness": .2}),
-    "Principled, red specular tint": (PRINCIPLED, {"Specular Tint": (1, .2, .1, 1), "Roughness": .2}),
-    "metal, roughness .15": (PRINCIPLED, {"Metallic": 1, "Roughness": .15, "Base Color": (1, .72, .3, 1)}),
-    "metal, roughness .35": (PRINCIPLED, {"Metallic": 1, "Roughness": .35}), "metal, roughness .7": (PRINCIPLED, {"Metallic": 1, "Roughness": .7}),
-    "Metallic .5": (PRINCIPLED, {"Metallic": .5, "Roughness": .4, "Base Color": (.9, .3, .1, 1)}),
-    "Glass": ("ShaderNodeBsdfGlass", {"Roughness": 0}), "Glass, roughness .3": ("ShaderNodeBsdfGlass", {"Roughness": .3}),
-    "Principled glass, roughness .25": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25}),
-    "Principled glass, tinted, roughness .25": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "Base Color": (.75, .9, 1, 1)}),
-    "frosted shell": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "Base Color": (.75, .9, 1, 1), "shell": .1}),
-    "Metallic .3, red": (PRINCIPLED, {"Metallic": .3, "Roughness": .5, "Base Color": (.6, .03, .02, 1)}),
-    "Metallic .5, white": (PRINCIPLED, {"Metallic": .5, "Roughness": .3}),
-    "green Diffuse, .25 of Glossy": ("MIX", {"factor": .25, "matte": (.05, .4, .1, 1), "gloss": (.8, .8, .8, 1), "roughness": .12}),
-    "red Diffuse, .6 of golden Glossy": ("MIX", {"factor": .6, "matte": (.6, .1, .1, 1), "gloss": (1, .7, .3, 1), "roughness": .4}),
-    "black, roughness .3": (PRINCIPLED, {"Base Color": (.02, .02, .02, 1), "Roughness": .3}),
-    "Coat": (PRINCIPLED, {"Coat Weight": 1, "Base Color": (.6, .03, .02, 1)}), "Sheen": (PRINCIPLED, {"Sheen Weight": 1, "Sheen Roughness": .4, "Base Color": (.08, .14, .3, 1), "Roughness": .8}),
-    "Subsurface": (PRINCIPLED, {"Subsurface Weight": 1, "Subsurface Scale": .5}), "Anisotropic .8": (PRINCIPLED, {"Metallic": 1, "Anisotropic": .8, "Roughness": .35}),
-    "thin film on glass": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": 0, "IOR": 1.33, "Thin Film Thickness": 420, "Thin Film IOR": 1.5}),
+    "Diffuse": ("ShaderNodeBsdfDiffuse", dict(Color=(0.8, 0.6, 0.4, 1))),
+    "Principled": (PRINCIPLED, {}),
+    "Principled, roughness 1": (PRINCIPLED, {"Roughness": 1}),
+    "Principled, dark, roughness .9": (PRINCIPLED, {"Roughness": 0.9, "Base Color": (0.05, 0.05, 0.05, 1)}),
+    "Principled, IOR 2, roughness .2": (PRINCIPLED, {"IOR": 2, "Roughness": 0.2}),
+    "Principled, red specular tint": (PRINCIPLED, {"Specular Tint": (1, 0.2, 0.1, 1), "Roughness": 0.2}),
+    "metal, roughness .15": (PRINCIPLED, {"Metallic": 1, "Roughness": 0.15, "Base Color": (1, 0.72, 0.3, 1)}),
+    "metal, roughness .35": (PRINCIPLED, {"Metallic": 1, "Roughness": 0.35}),
+    "metal, roughness .7": (PRINCIPLED, {"Metallic": 1, "Roughness": 0.7}),
+    "Metallic .5": (PRINCIPLED, {"Metallic": 0.5, "Roughness": 0.4, "Base Color": (0.9, 0.3, 0.1, 1)}),
+    "Glass": ("ShaderNodeBsdfGlass", {"Roughness": 0}),
+    "Glass, roughness .3": ("ShaderNodeBsdfGlass", {"Roughness": 0.3}),
+    "Principled glass, roughness .25": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": 0.25}),
+    "Principled glass, tinted, roughness .25": (
+        PRINCIPLED,
+        {"Transmission Weight": 1, "Roughness": 0.25, "Base Color": (0.75, 0.9, 1, 1)},
+    ),
+    "frosted shell": (
+        PRINCIPLED,
+        {"Transmission Weight": 1, "Roughness": 0.25, "Base Color": (0.75, 0.9, 1, 1), "shell": 0.1},
+    ),
+    "Metallic .3, red": (PRINCIPLED, {"Metallic": 0.3, "Roughness": 0.5, "Base Color": (0.6, 0.03, 0.02, 1)}),
+    "Metallic .5, white": (PRINCIPLED, {"Metallic": 0.5, "Roughness": 0.3}),
+    "green Diffuse, .25 of Glossy": (
+        "MIX",
+        {"factor": 0.25, "matte": (0.05, 0.4, 0.1, 1), "gloss": (0.8, 0.8, 0.8, 1), "roughness": 0.12},
+    ),
+    "red Diffuse, .6 of golden Glossy": (
+        "MIX",
+        {"factor": 0.6, "matte": (0.6, 0.1, 0.1, 1), "gloss": (1, 0.7, 0.3, 1), "roughness": 0.4},
+    ),
+    "black, roughness .3": (PRINCIPLED, {"Base Color": (0.02, 0.02, 0.02, 1), "Roughness": 0.3}),
+    "Coat": (PRINCIPLED, {"Coat Weight": 1, "Base Color": (0.6, 0.03, 0.02, 1)}),
+    "Sheen": (
+        PRINCIPLED,
+        {"Sheen Weight": 1, "Sheen Roughness": 0.4, "Base Color": (0.08, 0.14, 0.3, 1), "Roughness": 0.8},
+    ),
+    "Subsurface": (PRINCIPLED, {"Subsurface Weight": 1, "Subsurface Scale": 0.5}),
+    "Anisotropic .8": (PRINCIPLED, {"Metallic": 1, "Anisotropic": 0.8, "Roughness": 0.35}),
+    "thin film on glass": (
+        PRINCIPLED,
+        {"Transmission Weight": 1, "Roughness": 0, "IOR": 1.33, "Thin Film Thickness": 420, "Thin Film IOR": 1.5},
+    ),
     "Translucent": ("ShaderNodeBsdfTranslucent", {}),
-    "Principled glass, roughness .25, even light": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "even": 1}),
-    "frosted shell, even light": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "shell": .1, "even": 1}),
-    "black, roughness .3, even light": (PRINCIPLED, {"Base Color": (0, 0, 0, 1), "Roughness": .3, "even": 1}),
+    "Principled glass, roughness .25, even light": (
+        PRINCIPLED,
+        {"Transmission Weight": 1, "Roughness": 0.25, "even": 1},
+    ),
+    "frosted shell, even light": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": 0.25, "shell": 0.1, "even": 1}),
+    "black, roughness .3, even light": (PRINCIPLED, {"Base Color": (0, 0, 0, 1), "Roughness": 0.3, "even": 1}),
     "black, smooth, even light": (PRINCIPLED, {"Base Color": (0, 0, 0, 1), "Roughness": 0, "even": 1}),
-    "Diffuse, .5 of Translucent": ("SHADE", {"matte": (.9, .82, .65, 1), "through": (.9, .75, .5, 1)}),
+    "Diffuse, .5 of Translucent": ("SHADE", {"matte": (0.9, 0.82, 0.65, 1), "through": (0.9, 0.75, 0.5, 1)}),
 }
 
 
@@ -102,7 +135,10 @@ def mixed(tree, output, values):
     mix, matte, other = (tree.nodes.new(f"ShaderNode{word}") for word in (
         "MixShader", "BsdfDiffuse", "BsdfAnisotropic" if "gloss" in values else "BsdfTranslucent"))
     mix.inputs[0].default_value = values.get("factor", .5)
-    matte.inputs[0].default_value, other.inputs[0].default_value = values["matte"], values.get("gloss") or values["through"]
+    matte.inputs[0].default_value, other.inputs[0].default_value = (
+        values["matte"],
+        values.get("gloss") or values["through"],
+    )
     if "gloss" in values:
         other.inputs["Roughness"].default_value = values["roughness"]
     for k, node in enumerate((matte, other)):
@@ -150,20 +186,53 @@ def compare(name, scene, bounces, sky, binaries, folder):
     tempolux_addon.export(scene, str(glb))
     scene.render.engine = "CYCLES"
     cycles, settings = scene.cycles, scene.render.image_settings
-    cycles.samples, cycles.use_denoising, cycles.max_bounces, cycles.blur_glossy, cycles.sample_clamp_indirect = 128, False, bounces, 0, 0
+    cycles.samples, cycles.use_denoising, cycles.max_bounces, cycles.blur_glossy, cycles.sample_clamp_indirect = (
+        128,
+        False,
+        bounces,
+        0,
+        0,
+    )
     cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.caustics_reflective = cycles.caustics_refractive = True
     settings.file_format, settings.color_depth, settings.exr_codec, settings.color_mode = "OPEN_EXR", "32", "ZIP", "RGB"
     scene.render.filepath = str(theirs)
     bpy.ops.render.render(write_still=True)
     size = scene.render.resolution_x
-    subprocess.run([binaries / "frame-render", glb, "--frame", "1", "--size", f"{size}x{size}", "--integrator", "path", "--environment", sky,
-                    "--spp", "256", "-o", ours], check=True, capture_output=True)
+    subprocess.run(
+        [
+            binaries / "frame-render",
+            glb,
+            "--frame",
+            "1",
+            "--size",
+            f"{size}x{size}",
+            "--integrator",
+            "path",
+            "--environment",
+            sky,
+            "--spp",
+            "256",
+            "-o",
+            ours,
+        ],
+        check=True,
+        capture_output=True,
+    )
     a, b = exr.read(ours), exr.read(theirs)
-    inside = [y * size + x for y in range(size) for x in range(size) if math.hypot(x + .5 - size / 2, y + .5 - size / 2) < .47 * size]
+    inside = [
+        y * size + x
+        for y in range(size)
+        for x in range(size)
+        if math.hypot(x + 0.5 - size / 2, y + 0.5 - size / 2) < 0.47 * size
+    ]
     means = [[math.fsum(image.channels[c][i] for i in inside) / len(inside) for c in "RGB"] for image in (a, b)]
-    print(f"RATIO {name:44} " + " ".join(f"{x / y:.3f}" for x, y in zip(*means)) + f"   green: ours {means[0][1]:.4f}, Cycles {means[1][1]:.4f}",
-          flush=True)
+    print(
+        f"RATIO {name:44} "
+        + " ".join(f"{x / y:.3f}" for x, y in zip(*means))
+        + f"   green: ours {means[0][1]:.4f}, Cycles {means[1][1]:.4f}",
+        flush=True,
+    )
 
 
 def main():

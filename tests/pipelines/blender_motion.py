@@ -6,6 +6,7 @@ nodes, a camera with a shift, a cut to a second camera by a marker at frame 8. O
 Written: OUT/sheet.png, the ten frames of both at one exposure; printed: how far the pictures are apart, ours over Cycles by frame, and how far
 the outlines of what is coloured are apart: the share of coloured pixels that have another colour in the other picture.
 """
+
 import math
 import pathlib
 import subprocess
@@ -89,7 +90,11 @@ def instances():
                                                                      "GeometryNodeInstanceOnPoints", "NodeGroupOutput"))
     line.inputs["Offset"].default_value = (.3, 0, .05)
     info.inputs["Object"].default_value = source
-    for a, b, name in ((line.outputs[0], points, "Points"), (info.outputs["Geometry"], points, "Instance"), (points.outputs[0], output, 0)):
+    for a, b, name in (
+        (line.outputs[0], points, "Points"),
+        (info.outputs["Geometry"], points, "Instance"),
+        (points.outputs[0], output, 0),
+    ):
         group.links.new(a, b.inputs[name])
     bpy.ops.mesh.primitive_cube_add(size=.1, location=(-1.4, -.9, .1))
     bpy.context.object.modifiers.new("Row", "NODES").node_group = group
@@ -141,8 +146,26 @@ def theirs(scene, out):
 
 def ours(binaries, glb, camera, out):
     for frame in FRAMES:
-        subprocess.run([binaries / "frame-render", glb, "--frame", str(frame), "--size", "x".join(map(str, SIZE)), "--integrator", "path", "--environment",
-                        ".3,.3,.3", "--spp", "64", *camera, "-o", out / f"{frame:04d}.exr"], check=True)
+        subprocess.run(
+            [
+                binaries / "frame-render",
+                glb,
+                "--frame",
+                str(frame),
+                "--size",
+                "x".join(map(str, SIZE)),
+                "--integrator",
+                "path",
+                "--environment",
+                ".3,.3,.3",
+                "--spp",
+                "64",
+                *camera,
+                "-o",
+                out / f"{frame:04d}.exr",
+            ],
+            check=True,
+        )
 
 
 def colour_of(rgb):
@@ -179,13 +202,19 @@ def main():
     for frame in FRAMES:
         a, b = exr.read(out / f"{frame:04d}.exr"), exr.read(out / f"{frame:04d}_cycles.exr")
         pairs.append((a, b))
-        hues = [[colour_of([image.channels[c][i] for c in "RGB"]) for i in range(SIZE[0] * SIZE[1])] for image in (a, b)]
+        hues = [
+            [colour_of([image.channels[c][i] for c in "RGB"]) for i in range(SIZE[0] * SIZE[1])] for image in (a, b)
+        ]
         coloured = sum(h is not None for h in hues[1])
         apart = sum(p != q for p, q in zip(*hues)) / coloured
-        print(f"frame {frame:2}: ours / Cycles {a.mean('R') / b.mean('R'):.3f} {a.mean('G') / b.mean('G'):.3f} {a.mean('B') / b.mean('B'):.3f}; "
-              f"coloured pixels {coloured}, of another colour in ours {apart:.1%}")
+        print(
+            f"frame {frame:2}: ours / Cycles {a.mean('R') / b.mean('R'):.3f} {a.mean('G') / b.mean('G'):.3f} {a.mean('B') / b.mean('B'):.3f}; "
+            f"coloured pixels {coloured}, of another colour in ours {apart:.1%}"
+        )
     sheet(pairs, out)
-    subprocess.run([binaries / "tempolux-info", "--png", out / "sheet.png", out / "sheet.exr"], check=True, capture_output=True)
+    subprocess.run(
+        [binaries / "tempolux-info", "--png", out / "sheet.png", out / "sheet.exr"], check=True, capture_output=True
+    )
 
 
 main()

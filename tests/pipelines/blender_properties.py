@@ -5,6 +5,7 @@
 or blender -b --factory-startup -P tests/pipelines/blender_properties.py. Printed: property, the part of the file that changed, or the new line.
 Exit 1 if one is in neither. A property that this Blender lacks is left out.
 """
+
 import json
 import math
 import os
@@ -99,7 +100,12 @@ def depth(scene):
 
 def cropped(scene):
     scene.render.use_border = scene.render.use_crop_to_border = True
-    scene.render.border_max_x, scene.render.border_min_x, scene.render.border_min_y, scene.render.border_max_y = .6, .1, 0, 1
+    scene.render.border_max_x, scene.render.border_min_x, scene.render.border_min_y, scene.render.border_max_y = (
+        0.6,
+        0.1,
+        0,
+        1,
+    )
 
 
 def background(word, value):
@@ -110,7 +116,9 @@ def background(word, value):
 
 def noise(scene):
     tree = bpy.data.materials["M"].node_tree
-    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    tree.links.new(
+        tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"]
+    )
 
 
 def marker(scene):
@@ -122,38 +130,76 @@ def marker(scene):
 
 
 PROPERTIES = {
-    "Base Color": socket("Base Color", value=(.1, .2, .3, 1)), "Metallic": socket("Metallic", value=.7),
-    "Roughness": socket("Roughness", value=.31), "IOR": socket("IOR", value=1.7), "Alpha": socket("Alpha", value=.4),
-    "Specular level": socket("Specular IOR Level", "Specular", value=.2), "Specular Tint": socket("Specular Tint", value=(1, .2, .1, 1)),
-    "Transmission": socket("Transmission Weight", "Transmission", value=.6), "Coat": socket("Coat Weight", "Clearcoat", value=.5),
-    "Coat Roughness": socket("Coat Roughness", "Clearcoat Roughness", value=.2), "Coat Tint": socket("Coat Tint", value=(1, .2, .1, 1)),
+    "Base Color": socket("Base Color", value=(0.1, 0.2, 0.3, 1)),
+    "Metallic": socket("Metallic", value=0.7),
+    "Roughness": socket("Roughness", value=0.31),
+    "IOR": socket("IOR", value=1.7),
+    "Alpha": socket("Alpha", value=0.4),
+    "Specular level": socket("Specular IOR Level", "Specular", value=0.2),
+    "Specular Tint": socket("Specular Tint", value=(1, 0.2, 0.1, 1)),
+    "Transmission": socket("Transmission Weight", "Transmission", value=0.6),
+    "Coat": socket("Coat Weight", "Clearcoat", value=0.5),
+    "Coat Roughness": socket("Coat Roughness", "Clearcoat Roughness", value=0.2),
+    "Coat Tint": socket("Coat Tint", value=(1, 0.2, 0.1, 1)),
     "Coat IOR": socket("Coat IOR", value=1.9),
-    "Sheen": socket("Sheen Weight", "Sheen", value=.5), "Sheen Roughness": socket("Sheen Roughness", value=.2),
-    "Sheen Tint": socket("Sheen Tint", value=(1, .2, .1, 1)), "Emission Color": socket("Emission Color", "Emission", value=(1, .5, .1, 1)),
-    "Emission Strength": socket("Emission Strength", value=2.5), "Anisotropic": socket("Anisotropic", value=.6),
-    "Anisotropic Rotation": socket("Anisotropic Rotation", value=.3), "Thin Film": socket("Thin Film Thickness", value=400),
-    "Thin Film IOR": socket("Thin Film IOR", value=1.6), "Subsurface": socket("Subsurface Weight", "Subsurface", value=.5),
-    "Diffuse Roughness": socket("Diffuse Roughness", value=.8), "a procedural colour": noise,
-    "lamp power": put("lamp", "Area", "energy", 33), "lamp colour": put("lamp", "Point", "color", (1, .5, .2)),
-    "lamp exposure": put("lamp", "Spot", "exposure", 2), "lamp temperature": lambda s: (put("lamp", "Point", "use_temperature", True)(s),
-                                                                                       put("lamp", "Point", "temperature", 2500)(s)),
-    "lamp normalize": put("lamp", "Area", "normalize", False), "lamp radius": put("lamp", "Point", "shadow_soft_size", .3),
-    "spot radius": put("lamp", "Spot", "shadow_soft_size", .3), "spot size": put("lamp", "Spot", "spot_size", .5),
-    "spot blend": put("lamp", "Spot", "spot_blend", .9), "sun angle": put("lamp", "Sun", "angle", .1),
-    "area size": put("lamp", "Area", "size", 2), "area shape": put("lamp", "Area", "shape", "DISK"), "area spread": put("lamp", "Area", "spread", 1),
-    "lens": put("camera", "Camera", "lens", 77), "sensor width": put("camera", "Camera", "sensor_width", 22),
-    "sensor fit": put("camera", "Camera", "sensor_fit", "VERTICAL"), "shift_x": put("camera", "Camera", "shift_x", .3),
-    "orthographic": put("camera", "Camera", "type", "ORTHO"), "panorama": put("camera", "Camera", "type", "PANO"), "depth of field": depth,
-    "motion blur": render("use_motion_blur", True), "pixel aspect": render("pixel_aspect_x", 2), "border": render("use_border", True),
-    "cropped border": cropped, "fps": render("fps", 30), "percentage": render("resolution_percentage", 50),
-    "holdout": put("object", "Cube", "is_holdout", True), "shadow catcher": put("object", "Cube", "is_shadow_catcher", True),
-    "visible_camera": put("object", "Cube", "visible_camera", False), "visible_shadow": put("object", "Cube", "visible_shadow", False),
-    "visible_glossy": put("object", "Cube", "visible_glossy", False), "hide_render": put("object", "Cube", "hide_render", True),
-    "delta scale": put("object", "Cube", "delta_scale", (1, 2, 1)), "negative scale": put("object", "Cube", "scale", (-1, 1, 1)),
-    "lamp visible_camera": put("object", "Area", "visible_camera", False), "array": modifier("ARRAY", count=3),
-    "subdivision of the render": modifier("SUBSURF", levels=0, render_levels=2), "wave": modifier("WAVE"),
-    "a modifier off in the render": modifier("SUBSURF", render_levels=2, show_render=False), "world colour": background("Color", (.2, .3, .4, 1)),
-    "world strength": background("Strength", 3), "camera markers": marker, "view exposure": lambda s: setattr(s.view_settings, "exposure", 1.5),
+    "Sheen": socket("Sheen Weight", "Sheen", value=0.5),
+    "Sheen Roughness": socket("Sheen Roughness", value=0.2),
+    "Sheen Tint": socket("Sheen Tint", value=(1, 0.2, 0.1, 1)),
+    "Emission Color": socket("Emission Color", "Emission", value=(1, 0.5, 0.1, 1)),
+    "Emission Strength": socket("Emission Strength", value=2.5),
+    "Anisotropic": socket("Anisotropic", value=0.6),
+    "Anisotropic Rotation": socket("Anisotropic Rotation", value=0.3),
+    "Thin Film": socket("Thin Film Thickness", value=400),
+    "Thin Film IOR": socket("Thin Film IOR", value=1.6),
+    "Subsurface": socket("Subsurface Weight", "Subsurface", value=0.5),
+    "Diffuse Roughness": socket("Diffuse Roughness", value=0.8),
+    "a procedural colour": noise,
+    "lamp power": put("lamp", "Area", "energy", 33),
+    "lamp colour": put("lamp", "Point", "color", (1, 0.5, 0.2)),
+    "lamp exposure": put("lamp", "Spot", "exposure", 2),
+    "lamp temperature": lambda s: (
+        put("lamp", "Point", "use_temperature", True)(s),
+        put("lamp", "Point", "temperature", 2500)(s),
+    ),
+    "lamp normalize": put("lamp", "Area", "normalize", False),
+    "lamp radius": put("lamp", "Point", "shadow_soft_size", 0.3),
+    "spot radius": put("lamp", "Spot", "shadow_soft_size", 0.3),
+    "spot size": put("lamp", "Spot", "spot_size", 0.5),
+    "spot blend": put("lamp", "Spot", "spot_blend", 0.9),
+    "sun angle": put("lamp", "Sun", "angle", 0.1),
+    "area size": put("lamp", "Area", "size", 2),
+    "area shape": put("lamp", "Area", "shape", "DISK"),
+    "area spread": put("lamp", "Area", "spread", 1),
+    "lens": put("camera", "Camera", "lens", 77),
+    "sensor width": put("camera", "Camera", "sensor_width", 22),
+    "sensor fit": put("camera", "Camera", "sensor_fit", "VERTICAL"),
+    "shift_x": put("camera", "Camera", "shift_x", 0.3),
+    "orthographic": put("camera", "Camera", "type", "ORTHO"),
+    "panorama": put("camera", "Camera", "type", "PANO"),
+    "depth of field": depth,
+    "motion blur": render("use_motion_blur", True),
+    "pixel aspect": render("pixel_aspect_x", 2),
+    "border": render("use_border", True),
+    "cropped border": cropped,
+    "fps": render("fps", 30),
+    "percentage": render("resolution_percentage", 50),
+    "holdout": put("object", "Cube", "is_holdout", True),
+    "shadow catcher": put("object", "Cube", "is_shadow_catcher", True),
+    "visible_camera": put("object", "Cube", "visible_camera", False),
+    "visible_shadow": put("object", "Cube", "visible_shadow", False),
+    "visible_glossy": put("object", "Cube", "visible_glossy", False),
+    "hide_render": put("object", "Cube", "hide_render", True),
+    "delta scale": put("object", "Cube", "delta_scale", (1, 2, 1)),
+    "negative scale": put("object", "Cube", "scale", (-1, 1, 1)),
+    "lamp visible_camera": put("object", "Area", "visible_camera", False),
+    "array": modifier("ARRAY", count=3),
+    "subdivision of the render": modifier("SUBSURF", levels=0, render_levels=2),
+    "wave": modifier("WAVE"),
+    "a modifier off in the render": modifier("SUBSURF", render_levels=2, show_render=False),
+    "world colour": background("Color", (0.2, 0.3, 0.4, 1)),
+    "world strength": background("Strength", 3),
+    "camera markers": marker,
+    "view exposure": lambda s: setattr(s.view_settings, "exposure", 1.5),
     "view transform": lambda s: setattr(s.view_settings, "view_transform", "Raw"),
 }
 NOTHING_CHANGES = {"a modifier off in the render", "view transform"}   # the second: a hint of the base goes
@@ -195,7 +241,9 @@ def main():
             print(f"{name:28} is not in this Blender")
             continue
         after, data, lines, line = exported(folder, name)
-        changed = sorted({p for p in {**before, **after} if before.get(p) != after.get(p)} - {"/buffers/0/byteLength"}, key=len)
+        changed = sorted(
+            {p for p in {**before, **after} if before.get(p) != after.get(p)} - {"/buffers/0/byteLength"}, key=len
+        )
         changed = [p for p in changed if "bufferViews" not in p and "accessors" not in p] or changed
         new = [text for text in lines if text not in said and not text.startswith(("kept:", "baked:", "lost or"))]
         where = ", ".join(changed[:2]) or ("the data" if data != data_before else "")

@@ -7,12 +7,19 @@ hair: hair systems.  sun: sun lamps.  glass: panes of clear glass.  spread: area
 points, angle of suns 0.  metallic: Metallic below 1 becomes 0.  frost: transmission of rough Principled becomes 0.  bumps: no Bump node.
 translucent: Translucent BSDF becomes Diffuse.  mixed: mixtures of a matte and a glossy shader become the matte one.
 """
+
 import math
 import sys
 
 import bpy
 
-WEIGHTS = {"coat": "Coat Weight", "sheen": "Sheen Weight", "film": "Thin Film Thickness", "anisotropy": "Anisotropic", "subsurface": "Subsurface Weight"}
+WEIGHTS = {
+    "coat": "Coat Weight",
+    "sheen": "Sheen Weight",
+    "film": "Thin Film Thickness",
+    "anisotropy": "Anisotropic",
+    "subsurface": "Subsurface Weight",
+}
 
 
 def shaders(kind):
@@ -36,7 +43,13 @@ def only_volume(thing):
 
 
 def is_clear_glass(thing):
-    nodes = [n for s in thing.material_slots if s.material and s.material.node_tree for n in s.material.node_tree.nodes if n.type == "BSDF_GLASS"]
+    nodes = [
+        n
+        for s in thing.material_slots
+        if s.material and s.material.node_tree
+        for n in s.material.node_tree.nodes
+        if n.type == "BSDF_GLASS"
+    ]
     return bool(nodes) and all(n.inputs["Roughness"].default_value == 0 for n in nodes)
 
 
@@ -91,7 +104,10 @@ def take_out(word):
     elif word == "mixed":
         for material, node in shaders("MIX_SHADER"):
             ends = [s.links[0].from_node for s in node.inputs if s.type == "SHADER" and s.is_linked]
-            if sorted(e.type for e in ends) == ["BSDF_DIFFUSE", "BSDF_GLOSSY"] or sorted(e.type for e in ends) == ["BSDF_ANISOTROPIC", "BSDF_DIFFUSE"]:
+            if sorted(e.type for e in ends) == ["BSDF_DIFFUSE", "BSDF_GLOSSY"] or sorted(e.type for e in ends) == [
+                "BSDF_ANISOTROPIC",
+                "BSDF_DIFFUSE",
+            ]:
                 replace(material, node, next(e for e in ends if e.type == "BSDF_DIFFUSE"))
     else:
         sys.exit(f"blender_without.py: no word {word}; see the head of the file")

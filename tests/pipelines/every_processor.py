@@ -9,6 +9,7 @@ All chains run on the first model and one chain on each. The plan is made on thi
 there. With --long all chains run on all models, the plan is emulated, too, and so is the example of formats/plan/plan.md. Helper programs that read images, packed meshes and OpenVDB are started by the tools and not
 emulated. Without qemu-x86_64 the test is skipped.
 """
+
 import argparse
 import array
 import math
@@ -29,13 +30,21 @@ for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 
 MODELS = ["Haswell", "EPYC"]
-SMALL = {"SIZE": "16x9", "PHOTONS": "1k", "POINTS": "--point-count 200 --light-samples 1", "CACHE": "--rays 64 --error-bound 1", "INDIRECT": "records"}
+SMALL = {
+    "SIZE": "16x9",
+    "PHOTONS": "1k",
+    "POINTS": "--point-count 200 --light-samples 1",
+    "CACHE": "--rays 64 --error-bound 1",
+    "INDIRECT": "records",
+}
 
 
 def room(camera_moves=False):
     scene = Scene()
     scene.room((-2, 0, -2), (2, 2.5, 2), scene.material((0.7, 0.6, 0.5)))
-    scene.quad((-0.4, 2.4, -0.4), (0.4, 2.4, -0.4), (0.4, 2.4, 0.4), (-0.4, 2.4, 0.4), scene.material(0, 8.0, one_sided=True))
+    scene.quad(
+        (-0.4, 2.4, -0.4), (0.4, 2.4, -0.4), (0.4, 2.4, 0.4), (-0.4, 2.4, 0.4), scene.material(0, 8.0, one_sided=True)
+    )
     camera = scene.camera((0, 1.2, 1.8), (0, 0.9, 0))
     if camera_moves:
         scene.animate(camera, "translation", [0, 8 / 24], [(0, 1.2, 1.8), (0.4, 1.2, 1.6)])
@@ -47,10 +56,19 @@ def glass(folder):
     scene = room(True)
     scene.mesh(*sphere_mesh((0.4, 0.5, 0), (0.4, 0.4, 0.4), 6, False)[:2], scene.glass())
     scene.mesh(*box_mesh((-0.9, 0, -0.5), (-0.3, 0.7, 0.1)), scene.glass(0.2, 1.4, (0.5, 0.3)))
-    scene.mesh(*box_mesh((0.9, 0, -0.9), (1.4, 1.1, -0.4)), scene.material((0.9, 0.7, 0.4), metallic=1, roughness=0.3, specular=1))
+    scene.mesh(
+        *box_mesh((0.9, 0, -0.9), (1.4, 1.1, -0.4)),
+        scene.material((0.9, 0.7, 0.4), metallic=1, roughness=0.3, specular=1),
+    )
     scene.point_light((1.2, 2, 0.8), 2)
     scene.spot_light((-1.2, 2, 1), (0, 0.3, 0), 4, 0.3, 0.6)
-    return {"SCENE": scene.save(folder / "glass.gltf"), "FRAMES": "0-1", "SPLIT": "on", "FILTER": "3", "CHANNELS": "RGBA,layers,Z,N,id,P,albedo"}
+    return {
+        "SCENE": scene.save(folder / "glass.gltf"),
+        "FRAMES": "0-1",
+        "SPLIT": "on",
+        "FILTER": "3",
+        "CHANNELS": "RGBA,layers,Z,N,id,P,albedo",
+    }
 
 
 def skinned(scene):
@@ -73,8 +91,19 @@ def skinned(scene):
     tip = len(scene.document["nodes"])
     scene.document["nodes"].append({"translation": [0, 0.5, 0]})
     root = scene.node(children=[tip])
-    scene.document["skins"] = [{"joints": [root, tip], "inverseBindMatrices": scene._accessor(array.array("f", [
-        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -0.5, 0, 1]), "VEC4", 5126)}]
+    scene.document["skins"] = [
+        {
+            "joints": [root, tip],
+            "inverseBindMatrices": scene._accessor(
+                array.array(
+                    "f",
+                    [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -0.5, 0, 1],
+                ),
+                "VEC4",
+                5126,
+            ),
+        }
+    ]
     scene.document["accessors"][-1].update({"type": "MAT4", "count": 2})
     scene.document["nodes"][bar]["skin"] = 0
     scene.animate(tip, "rotation", [0, 8 / 24], [(0, 0, 0, 1), (0, 0, math.sin(0.25), math.cos(0.25))])
@@ -102,12 +131,35 @@ def sky(folder):
 def smoke(folder, tools):
     """A ball of smoke; the second frame's photons update the first's."""
     for frame in (0, 1):
-        values = b"".join(struct.pack("<f", max(0.0, 1 - math.dist((x, y + frame / 2, z), (4, 4, 4)) / 3)) for x in range(8) for y in range(8) for z in range(8))
-        subprocess.run([tools.parent / "tests" / "make-vdb", folder / f"smoke_000{frame}.vdb", "8", "8", "8", ".12", "-.5", ".6", "-.5"],
-                       input=values, check=True)
+        values = b"".join(
+            struct.pack("<f", max(0.0, 1 - math.dist((x, y + frame / 2, z), (4, 4, 4)) / 3))
+            for x in range(8)
+            for y in range(8)
+            for z in range(8)
+        )
+        subprocess.run(
+            [
+                tools.parent / "tests" / "make-vdb",
+                folder / f"smoke_000{frame}.vdb",
+                "8",
+                "8",
+                "8",
+                ".12",
+                "-.5",
+                ".6",
+                "-.5",
+            ],
+            input=values,
+            check=True,
+        )
     scene = room()
-    return {"SCENE": scene.save(folder / "smoke.gltf"), "FRAMES": "0-1", "VOLUME": folder / "smoke_####.vdb", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-1",
-            "UPDATE": "30%"}
+    return {
+        "SCENE": scene.save(folder / "smoke.gltf"),
+        "FRAMES": "0-1",
+        "VOLUME": folder / "smoke_####.vdb",
+        "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-1",
+        "UPDATE": "30%",
+    }
 
 
 def chains(folder, tools):
@@ -124,18 +176,38 @@ def chains(folder, tools):
 
 def digests(tools, out):
     """{name: digest} of all files but statistics, plans' notes and markers."""
-    files = [p for p in sorted(out.rglob("*")) if p.is_file() and p.suffix != ".json" and p.relative_to(out).parts[0] not in ("state", "shown")]
+    files = [
+        p
+        for p in sorted(out.rglob("*"))
+        if p.is_file() and p.suffix != ".json" and p.relative_to(out).parts[0] not in ("state", "shown")
+    ]
     found = {}
     for path in files:
         done = subprocess.run([tools / "tempolux-info", "--digest", path], capture_output=True, text=True)
-        found[str(path.relative_to(out))] = done.stdout.split()[0] if done.returncode == 0 else str(hash(path.read_bytes()))
+        found[str(path.relative_to(out))] = (
+            done.stdout.split()[0] if done.returncode == 0 else str(hash(path.read_bytes()))
+        )
     return found
 
 
 def run(tools, out, variables, emulator=None):
     values = [f"{k}={v}" for k, v in (SMALL | variables | ({"RUN": emulator} if emulator else {})).items()]
-    done = subprocess.run(["nice", "make", "-f", "Makefile.example", "--no-print-directory", "demo", f"OUT={out}", f"BIN={tools}", *values],
-                          capture_output=True, text=True, timeout=1500)
+    done = subprocess.run(
+        [
+            "nice",
+            "make",
+            "-f",
+            "Makefile.example",
+            "--no-print-directory",
+            "demo",
+            f"OUT={out}",
+            f"BIN={tools}",
+            *values,
+        ],
+        capture_output=True,
+        text=True,
+        timeout=1500,
+    )
     if done.returncode:
         raise RuntimeError((done.stdout + done.stderr)[-1500:])
     return digests(tools, out)
@@ -178,13 +250,24 @@ def main():
                 there = run(tools, folder / f"{number}-{model}", variables, emulator)
                 differing = sorted(f for f in expected.keys() | there.keys() if expected.get(f) != there.get(f))
                 failed += bool(differing)
-                print(f"{'FAILED' if differing else 'ok'}: {title}, {model}: {len(differing)} of {len(expected)} files differ" +
-                      "".join(f"\n    {f}: {expected.get(f, 'not made')} {there.get(f, 'not made')}" for f in differing), flush=True)
+                print(
+                    f"{'FAILED' if differing else 'ok'}: {title}, {model}: {len(differing)} of {len(expected)} files differ"
+                    + "".join(
+                        f"\n    {f}: {expected.get(f, 'not made')} {there.get(f, 'not made')}" for f in differing
+                    ),
+                    flush=True,
+                )
         if arguments.long and arguments.only in "plan":
             for model, emulator in emulators.items():
-                done = subprocess.run(["sh", "tests/pipelines/plan_example.sh", f"{emulator} {tools}"], capture_output=True, text=True)
+                done = subprocess.run(
+                    ["sh", "tests/pipelines/plan_example.sh", f"{emulator} {tools}"], capture_output=True, text=True
+                )
                 failed += done.returncode != 0
-                print(f"{'FAILED' if done.returncode else 'ok'}: the example of plan.md, {model}" + (done.stdout if done.returncode else ""), flush=True)
+                print(
+                    f"{'FAILED' if done.returncode else 'ok'}: the example of plan.md, {model}"
+                    + (done.stdout if done.returncode else ""),
+                    flush=True,
+                )
     return 1 if failed else 0
 
 

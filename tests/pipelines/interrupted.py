@@ -13,6 +13,7 @@ Run at the top of the tree; BIN is the folder with the tools. Tiny scenes. make 
 
 --makefile: Makefile.example of another version, to see it fail.
 """
+
 import argparse
 import hashlib
 import os
@@ -32,15 +33,28 @@ import walk_scenes                                                              
 for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):   # independent of the make that runs the tests
     os.environ.pop(name, None)
 
-SMALL = {"SIZE": "32x18", "PHOTONS": "1k", "POINTS": "--point-count 300 --light-samples 1", "CACHE": "--rays 20 --error-bound 1", "ERROR": "0.05",
-         "QUALITY": "draft", "INDIRECT": "records"}
+SMALL = {
+    "SIZE": "32x18",
+    "PHOTONS": "1k",
+    "POINTS": "--point-count 300 --light-samples 1",
+    "CACHE": "--rays 20 --error-bound 1",
+    "ERROR": "0.05",
+    "QUALITY": "draft",
+    "INDIRECT": "records",
+}
 METHODS = {"frames": {"FRAMES": "0-1", "MOVING": "light"}, "window": {"FRAMES": "0-1", "FILTER": "3", "MOVING": "anew"},
            "walkthrough": {"FRAMES": "0-2", "METHOD": "walkthrough", "KEY_DISTANCE": "2", "FILTER": "1"},
            "preview": {"FRAMES": "0-1", "METHOD": "preview", "INDIRECT": "", "TIME": "--segment 2"},
            "smoke": {"FRAMES": "0-1", "UPDATE": "20%", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-7"},
            "temporal": {"FRAMES": "0-1", "MOVING": "time", "SPLIT": "on"}}
-LONG = {"frames": {"FRAMES": "0-2"}, "window": {"FRAMES": "0-2"}, "walkthrough": {"FRAMES": "0-4", "KEY_DISTANCE": "4", "THRESHOLD": "0%"},
-        "preview": {"FRAMES": "0-2"}, "smoke": {"FRAMES": "0-2"}, "temporal": {"FRAMES": "0-2"}}
+LONG = {
+    "frames": {"FRAMES": "0-2"},
+    "window": {"FRAMES": "0-2"},
+    "walkthrough": {"FRAMES": "0-4", "KEY_DISTANCE": "4", "THRESHOLD": "0%"},
+    "preview": {"FRAMES": "0-2"},
+    "smoke": {"FRAMES": "0-2"},
+    "temporal": {"FRAMES": "0-2"},
+}
 SKY, OTHER_SKY = "1,1,1", ".2,.3,.4"
 
 
@@ -51,7 +65,12 @@ class Chain:
         self.folder, self.method, self.arguments = folder / method, method, arguments
         self.folder.mkdir()
         self.out, self.log, self.failed = self.folder / "out", self.folder / "log", 0
-        self.values = SMALL | METHODS[method] | (LONG[method] if arguments.long else {}) | {"SCENE": str(self.scene()), "BIN": str(arguments.bin)}
+        self.values = (
+            SMALL
+            | METHODS[method]
+            | (LONG[method] if arguments.long else {})
+            | {"SCENE": str(self.scene()), "BIN": str(arguments.bin)}
+        )
         if method == "smoke":
             self.values["VOLUME"] = str(self.folder / "smoke_####.vdb")
         self.values = {name: value for name, value in self.values.items() if value}
@@ -61,17 +80,37 @@ class Chain:
             return Path("pipelines/scenes/S2_cornell_moving.glb").resolve()
         if self.method == "walkthrough":
             scene = self.folder / "pan.glb"
-            subprocess.run([sys.executable, "-B", "pipelines/scenes/make_walkthrough.py", "pan", "pipelines/scenes/S1_cornell.glb", scene], check=True)
+            subprocess.run(
+                [
+                    sys.executable,
+                    "-B",
+                    "pipelines/scenes/make_walkthrough.py",
+                    "pan",
+                    "pipelines/scenes/S1_cornell.glb",
+                    scene,
+                ],
+                check=True,
+            )
             return scene
         for frame in range(8):
-            walk_scenes.vdb(self.arguments.bin.parent / "tests" / "make-vdb", self.folder / f"smoke_{frame:04d}.vdb", frame, 0)
+            walk_scenes.vdb(
+                self.arguments.bin.parent / "tests" / "make-vdb", self.folder / f"smoke_{frame:04d}.vdb", frame, 0
+            )
         return Path("pipelines/scenes/S1_cornell.glb").resolve()
 
     def command(self, out, sky=SKY, jobs=2, run=None, **more):
         values = self.values | {"OUT": str(out), "SKY": sky, "WAIT": "0"} | ({"RUN": run} if run else {}) | more
         if "WAIT" not in self.arguments.makefile.read_text():
             del values["WAIT"]
-        return ["make", "-f", str(self.arguments.makefile), f"-j{jobs}", "--no-print-directory", "demo", *(f"{n}={v}" for n, v in values.items())]
+        return [
+            "make",
+            "-f",
+            str(self.arguments.makefile),
+            f"-j{jobs}",
+            "--no-print-directory",
+            "demo",
+            *(f"{n}={v}" for n, v in values.items()),
+        ]
 
     def broken(self, what, which):
         """The value of RUN that spoils a command."""
@@ -94,9 +133,15 @@ class Chain:
     def pictures(self, out):
         """Digests of frames, bytes of previews and sheet."""
         frames = sorted((out / "frames").glob("*.exr"))
-        lines = subprocess.run([self.arguments.bin / "tempolux-info", "--digest", *frames], capture_output=True, text=True).stdout.splitlines()
+        lines = subprocess.run(
+            [self.arguments.bin / "tempolux-info", "--digest", *frames], capture_output=True, text=True
+        ).stdout.splitlines()
         shown = {Path(line.split(None, 1)[1]).name: line.split()[0] for line in lines}
-        return shown | {p.name: hashlib.sha1(p.read_bytes()).hexdigest() for p in [*(out / "frames").glob("*.png"), out / "sheet.png"] if p.exists()}
+        return shown | {
+            p.name: hashlib.sha1(p.read_bytes()).hexdigest()
+            for p in [*(out / "frames").glob("*.png"), out / "sheet.png"]
+            if p.exists()
+        }
 
     def prepare(self):
         """Runs alone with both skies."""
@@ -122,8 +167,15 @@ class Chain:
         """The same command once more gives what a clean run gives."""
         code, text = self.make(self.out, **more)
         if code or self.pictures(self.out) != self.clean:
-            self.wrong(f"{what}, then typed again: " + (f"make failed: {text[-300:]}" if code else "other pictures than in a clean run"))
-        left = [str(p.relative_to(self.out)) for p in self.out.rglob("*") if re.search(r"^[.].*[.]tmp[.]|[.]part[.]|[.]try[.]|[.]late$", p.name)]
+            self.wrong(
+                f"{what}, then typed again: "
+                + (f"make failed: {text[-300:]}" if code else "other pictures than in a clean run")
+            )
+        left = [
+            str(p.relative_to(self.out))
+            for p in self.out.rglob("*")
+            if re.search(r"^[.].*[.]tmp[.]|[.]part[.]|[.]try[.]|[.]late$", p.name)
+        ]
         if left:
             self.wrong(f"{what}, then typed again: left are {left[:3]}")
 
@@ -199,8 +251,12 @@ def stopped(chain, frames, after):
     more = {"FRAMES": f"0-{frames - 1}"}
     shutil.rmtree(chain.out, ignore_errors=True)
     raw = lambda: len(list((chain.out / "raw").glob("[0-9]*.exr")))                  # noqa: E731
-    make = subprocess.Popen(chain.command(chain.out, run=chain.broken("failing", "st-filter:filtered"), **more), stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, start_new_session=True)
+    make = subprocess.Popen(
+        chain.command(chain.out, run=chain.broken("failing", "st-filter:filtered"), **more),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    )
     end = time.monotonic() + 100
     while raw() < after and make.poll() is None and time.monotonic() < end:
         time.sleep(.01)
@@ -219,14 +275,18 @@ def stopped(chain, frames, after):
     remade = count(chain, "frame-render:raw")
     shown = len(list((chain.out / "frames").glob("*.exr")))
     if code or remade != frames - kept or shown != frames or raw():
-        chain.wrong(f"stopped, then typed again: exit {code}, {remade} rendered, {shown} shown, {raw()} raw frames left: {text[-300:]}")
+        chain.wrong(
+            f"stopped, then typed again: exit {code}, {remade} rendered, {shown} shown, {raw()} raw frames left: {text[-300:]}"
+        )
     return f"SIGINT after {after} of {frames} raw frames: {kept} kept, {remade} rendered the next time"
 
 
 def disk(chain, frames):
     """How many raw frames are there at once, and how many rendered frames are not shown yet."""
     shutil.rmtree(chain.out, ignore_errors=True)
-    make = subprocess.Popen(chain.command(chain.out, FRAMES=f"0-{frames - 1}"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    make = subprocess.Popen(
+        chain.command(chain.out, FRAMES=f"0-{frames - 1}"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     most = behind = 0
     while make.poll() is None:
         shown = len(list((chain.out / "frames").glob("*.exr")))
@@ -236,7 +296,9 @@ def disk(chain, frames):
     window = int(chain.values.get("FILTER", 1))
     limit = window + 4   # two jobs, each with a raw frame under way and one to be filtered
     if make.returncode or most > limit or behind > limit:
-        chain.wrong(f"disk: exit {make.returncode}, {most} raw frames at once, {behind} frames not shown yet, at most {limit} are needed")
+        chain.wrong(
+            f"disk: exit {make.returncode}, {most} raw frames at once, {behind} frames not shown yet, at most {limit} are needed"
+        )
     return f"at most {most} of {frames} raw frames at once, {behind} not shown yet"
 
 
@@ -264,7 +326,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("bin", type=lambda p: Path(p).resolve())
     parser.add_argument("--long", action="store_true")
-    parser.add_argument("--only", default="", help=", ".join([*METHODS, "lost", "cut", "late", "killed", "stopped", "disk"]))
+    parser.add_argument(
+        "--only", default="", help=", ".join([*METHODS, "lost", "cut", "late", "killed", "stopped", "disk"])
+    )
     parser.add_argument("--makefile", type=lambda p: Path(p).resolve(), default=Path("Makefile.example").resolve())
     arguments = parser.parse_args()
     only = set(arguments.only.split(",")) - {""}
@@ -282,7 +346,10 @@ def main():
                 chain.prepare()
             for test in tests.values():
                 said = test()
-                print(f"{'FAILED' if chain.failed else 'ok'}: {method}, {said}, {time.monotonic() - began:.0f} s", flush=True)
+                print(
+                    f"{'FAILED' if chain.failed else 'ok'}: {method}, {said}, {time.monotonic() - began:.0f} s",
+                    flush=True,
+                )
             failed += chain.failed
     return 1 if failed else 0
 

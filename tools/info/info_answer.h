@@ -20,7 +20,8 @@ struct Request {
 };
 
 /// Answers the request on standard output, or in the file that the request names. Returns the exit code: exit_differs
-/// if --check or --whole finds a file that is not valid, or --diff finds different data. Throws InputError for bad usage.
+/// if --check or --whole finds a file that is not valid, or --diff finds different data. Throws InputError for bad
+/// usage.
 int answer(Tool& tool, Request& request);
 
 }  // namespace tempolux::tools

@@ -12,8 +12,15 @@ from . import settle
 from .cameras import picture_size
 from .shot import Shot
 
-bl_info = {"name": "tempolux export", "author": "tempolux", "version": (2, 0), "blender": (3, 4, 0), "category": "Import-Export",
-           "location": "File > Export > tempolux (.glb)", "description": "Export a shot for tempolux"}
+bl_info = {
+    "name": "tempolux export",
+    "author": "tempolux",
+    "version": (2, 0),
+    "blender": (3, 4, 0),
+    "category": "Import-Export",
+    "location": "File > Export > tempolux (.glb)",
+    "description": "Export a shot for tempolux",
+}
 
 
 def makefile():
@@ -60,7 +67,9 @@ class ExportTempolux(bpy.types.Operator):
     """Export a shot for tempolux"""
     bl_idname, bl_label = "export_scene.tempolux", "Export for tempolux"
     filepath: bpy.props.StringProperty(subtype="FILE_PATH", default="shot.glb")
-    bake: bpy.props.IntProperty(name="Bake", default=1024, min=0, description="Largest side of a baked texture; 0: none is baked")
+    bake: bpy.props.IntProperty(
+        name="Bake", default=1024, min=0, description="Largest side of a baked texture; 0: none is baked"
+    )
     deform: bpy.props.BoolProperty(name="Deformation", default=True)
 
     def invoke(self, context, event):
@@ -68,7 +77,9 @@ class ExportTempolux(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context):
-        lines, line = export(context.scene, bpy.path.ensure_ext(self.filepath, ".glb"), bake=self.bake, deform=self.deform)
+        lines, line = export(
+            context.scene, bpy.path.ensure_ext(self.filepath, ".glb"), bake=self.bake, deform=self.deform
+        )
         for text in lines:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, line)

@@ -1,4 +1,5 @@
 """Values of nodes that glTF cannot say as pixels: Cycles bakes them from copies of the materials, in a scene that is thrown away."""
+
 import bpy
 import numpy
 
@@ -94,8 +95,13 @@ class Baker:
                 copies.append(self.copy(material, values.get(slot), image, render, normal))
                 thing.data.materials[slot] = copies[-1]
             self.fill(thing)
-            options = dict(type="NORMAL" if normal else "EMIT", margin=max(2, size // 64), use_clear=True, use_selected_to_active=False,
-                           target="IMAGE_TEXTURES")
+            options = dict(
+                type="NORMAL" if normal else "EMIT",
+                margin=max(2, size // 64),
+                use_clear=True,
+                use_selected_to_active=False,
+                target="IMAGE_TEXTURES",
+            )
             if normal:
                 options.update(normal_space="TANGENT", normal_r="POS_X", normal_g="POS_Y", normal_b="POS_Z")
             bpy.ops.object.bake(**options)
@@ -130,7 +136,9 @@ class Baker:
             if made.node_tree is None:
                 made.use_nodes = True
         tree = made.node_tree
-        output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL") or tree.nodes.new("ShaderNodeOutputMaterial")
+        output = (
+            tree.get_output_node("CYCLES") or tree.get_output_node("ALL") or tree.nodes.new("ShaderNodeOutputMaterial")
+        )
         for name in ("Surface", "Volume") + (() if normal else ("Displacement",)):
             for link in list(output.inputs[name].links):
                 tree.links.remove(link)

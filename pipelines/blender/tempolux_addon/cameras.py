@@ -13,8 +13,14 @@ class CameraState:
     def gltf(self):
         width = self.half * self.aspect
         if self.kind == "ORTHO":
-            return {"type": "orthographic", "orthographic": {"xmag": width, "ymag": self.half, "znear": 0.01, "zfar": 1000}}
-        return {"type": "perspective", "perspective": {"yfov": 2 * math.atan(self.half), "aspectRatio": self.aspect, "znear": 0.01}}
+            return {
+                "type": "orthographic",
+                "orthographic": {"xmag": width, "ymag": self.half, "znear": 0.01, "zfar": 1000},
+            }
+        return {
+            "type": "perspective",
+            "perspective": {"yfov": 2 * math.atan(self.half), "aspectRatio": self.aspect, "znear": 0.01},
+        }
 
     def ray(self, place, x, y):
         """Origin and direction in Blender's world of the ray through (x, y) of the picture, (0, 0) its top left."""
@@ -58,15 +64,22 @@ def camera_state(thing, place, scene):
     high = render.resolution_y * render.pixel_aspect_y
     fit = lens.sensor_fit if lens.sensor_fit != "AUTO" else "HORIZONTAL" if wide >= high else "VERTICAL"
     sensor = lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width
-    whole = lens.ortho_scale / 2 if lens.type == "ORTHO" else sensor / lens.lens / 2   # half of the side that fits the sensor
+    whole = (
+        lens.ortho_scale / 2 if lens.type == "ORTHO" else sensor / lens.lens / 2
+    )  # half of the side that fits the sensor
     fitted = wide if fit == "HORIZONTAL" else high
     half = whole * high / fitted
     shift = lens.shift_x * fitted / high, lens.shift_y * fitted / high
     x0, x1, y0, y1 = border(render)
     part = y1 - y0
     shift = ((shift[0] + ((x0 + x1) / 2 - .5) * wide / high) / part, (shift[1] + (y0 + y1) / 2 - .5) / part)
-    return CameraState("ORTHO" if lens.type == "ORTHO" else "PERSP", half * part, shift, wide * (x1 - x0) / (high * part),
-                       extras_of(lens, place, render))
+    return CameraState(
+        "ORTHO" if lens.type == "ORTHO" else "PERSP",
+        half * part,
+        shift,
+        wide * (x1 - x0) / (high * part),
+        extras_of(lens, place, render),
+    )
 
 
 def extras_of(lens, place, render):

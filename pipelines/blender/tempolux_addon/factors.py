@@ -3,12 +3,23 @@ from .colour import rec709
 from .values import as_number, as_tuple, is_constant, times
 
 STRENGTH = "/extensions/KHR_materials_emissive_strength/emissiveStrength"
-DEFAULTS = {"/extensions/KHR_materials_specular/specularFactor": 1.0, "/extensions/KHR_materials_specular/specularColorFactor": [1.0, 1.0, 1.0],
-            "/extensions/KHR_materials_ior/ior": 1.5, "/extensions/KHR_materials_transmission/transmissionFactor": 0.0}
-ANIMATED = {"/pbrMetallicRoughness/baseColorFactor", "/pbrMetallicRoughness/metallicFactor", "/pbrMetallicRoughness/roughnessFactor",
-            "/emissiveFactor", "/extensions/KHR_materials_emissive_strength/emissiveStrength",
-            "/extensions/KHR_materials_specular/specularFactor", "/extensions/KHR_materials_specular/specularColorFactor",
-            "/extensions/KHR_materials_ior/ior", "/extensions/KHR_materials_transmission/transmissionFactor"}
+DEFAULTS = {
+    "/extensions/KHR_materials_specular/specularFactor": 1.0,
+    "/extensions/KHR_materials_specular/specularColorFactor": [1.0, 1.0, 1.0],
+    "/extensions/KHR_materials_ior/ior": 1.5,
+    "/extensions/KHR_materials_transmission/transmissionFactor": 0.0,
+}
+ANIMATED = {
+    "/pbrMetallicRoughness/baseColorFactor",
+    "/pbrMetallicRoughness/metallicFactor",
+    "/pbrMetallicRoughness/roughnessFactor",
+    "/emissiveFactor",
+    "/extensions/KHR_materials_emissive_strength/emissiveStrength",
+    "/extensions/KHR_materials_specular/specularFactor",
+    "/extensions/KHR_materials_specular/specularColorFactor",
+    "/extensions/KHR_materials_ior/ior",
+    "/extensions/KHR_materials_transmission/transmissionFactor",
+}
 
 
 def as_number_or(value, other):
@@ -40,7 +51,9 @@ def unit(value):
 
 
 def set_base(result, base, alpha):
-    result.setdefault("pbrMetallicRoughness", {})["baseColorFactor"] = [unit(c) for c in rec709(as_tuple(base))] + [unit(alpha)]
+    result.setdefault("pbrMetallicRoughness", {})["baseColorFactor"] = [unit(c) for c in rec709(as_tuple(base))] + [
+        unit(alpha)
+    ]
 
 
 def set_emission(result, emission):
@@ -61,7 +74,11 @@ def reflection(look, mean):
         front, along = look["reflects"]
         return 1.5, min(1.0, along), [25 * c / along for c in rec709(front)] if along > 0 else [1.0, 1.0, 1.0]
     ior, level, tint = max(1.0, mean("ior")), max(0.0, mean("level")), rec709(as_tuple(mean("tint", colour=True)))
-    f0 = .04 if look.get("old_specular") and as_number_or(look["transmission"], 1) == 0 else ((ior - 1) / (ior + 1)) ** 2
+    f0 = (
+        0.04
+        if look.get("old_specular") and as_number_or(look["transmission"], 1) == 0
+        else ((ior - 1) / (ior + 1)) ** 2
+    )
     f0 *= 2 * level
     if level == 0 and as_number_or(look["transmission"], 1) == 0:
         return 1.5, 0.0, [1.0, 1.0, 1.0]
@@ -86,15 +103,26 @@ def set_extensions(result, look, means):
     if not is_constant(look["transmission"]) or as_number(look["transmission"]) > 0:
         extensions["KHR_materials_transmission"] = {"transmissionFactor": unit(as_number_or(look["transmission"], 1.0))}
     if mean("coat") > 0:
-        extensions["KHR_materials_clearcoat"] = {"clearcoatFactor": unit(mean("coat")), "clearcoatRoughnessFactor": unit(mean("coat_roughness"))}
+        extensions["KHR_materials_clearcoat"] = {
+            "clearcoatFactor": unit(mean("coat")),
+            "clearcoatRoughnessFactor": unit(mean("coat_roughness")),
+        }
     if mean("sheen") > 0:
-        extensions["KHR_materials_sheen"] = {"sheenColorFactor": [unit(mean("sheen") * c) for c in rec709(mean("sheen_tint", colour=True))],
-                                             "sheenRoughnessFactor": unit(mean("sheen_roughness"))}
+        extensions["KHR_materials_sheen"] = {
+            "sheenColorFactor": [unit(mean("sheen") * c) for c in rec709(mean("sheen_tint", colour=True))],
+            "sheenRoughnessFactor": unit(mean("sheen_roughness")),
+        }
     if mean("film") > 0:
-        extensions["KHR_materials_iridescence"] = {"iridescenceFactor": 1.0, "iridescenceIor": mean("film_ior"),
-                                                   "iridescenceThicknessMinimum": mean("film"), "iridescenceThicknessMaximum": mean("film")}
+        extensions["KHR_materials_iridescence"] = {
+            "iridescenceFactor": 1.0,
+            "iridescenceIor": mean("film_ior"),
+            "iridescenceThicknessMinimum": mean("film"),
+            "iridescenceThicknessMaximum": mean("film"),
+        }
     if mean("anisotropic") > 0 and (not is_constant(look["metallic"]) or as_number(look["metallic"]) > 0 or True):
-        extensions["KHR_materials_anisotropy"] = {"anisotropyStrength": unit(mean("anisotropic")),
-                                                  "anisotropyRotation": 6.283185307179586 * mean("anisotropic_rotation")}
+        extensions["KHR_materials_anisotropy"] = {
+            "anisotropyStrength": unit(mean("anisotropic")),
+            "anisotropyRotation": 6.283185307179586 * mean("anisotropic_rotation"),
+        }
     if not extensions:
         del result["extensions"]

@@ -24,9 +24,19 @@ class Lamps:
             lost(Damage.LIGHT, item.label, "nodes of a lamp are left out, but its power and colour are kept")
         elif tree:
             scale_by_nodes(tree, states.values())
-        if item.flags & {"visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow", "light_linking"}:
+        if item.flags & {
+            "visible_diffuse",
+            "visible_glossy",
+            "visible_transmission",
+            "visible_shadow",
+            "light_linking",
+        }:
             lost(Damage.LIGHT, item.label, "light linking and hiding from rays are left out: it lights all objects")
-        if not getattr(lamp, "cycles", None) or not getattr(lamp.cycles, "cast_shadow", True) or not getattr(lamp, "use_shadow", True):
+        if (
+            not getattr(lamp, "cycles", None)
+            or not getattr(lamp.cycles, "cast_shadow", True)
+            or not getattr(lamp, "use_shadow", True)
+        ):
             lost(Damage.LIGHT, item.label, "it casts shadows here")
         if getattr(getattr(lamp, "cycles", None), "is_portal", False):
             return
@@ -37,8 +47,12 @@ class Lamps:
             return
         bare = first.kind == "POINT" and first.radius > 0 and "visible_camera" in item.flags and self.in_view(item)
         if bare:
-            lost(Damage.DETAIL, item.label, "the camera would see the ball of this lamp, which Blender hides: it has no radius here, its shadows are "
-                                            "sharp (radius kept in extras)")
+            lost(
+                Damage.DETAIL,
+                item.label,
+                "the camera would see the ball of this lamp, which Blender hides: it has no radius here, its shadows are "
+                "sharp (radius kept in extras)",
+            )
         elif first.emits():
             self.add_emitter(item, states, places)
             return
@@ -48,7 +62,9 @@ class Lamps:
             lost(Damage.DETAIL, item.label, "a sun has no angle here: its shadows are sharp (angle kept in extras)")
         if first.kind == "SPOT" and first.cone > math.pi / 2:
             lost(Damage.LIGHT, item.label, "a spot wider than half of all directions is cut there")
-        lights = self.document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        lights = self.document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})[
+            "lights"
+        ]
         self.document.use("KHR_lights_punctual")
         light = {"name": item.name, **first.gltf()}
         index = len(lights)
@@ -75,28 +91,47 @@ class Lamps:
         lights = document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
         document.use("KHR_lights_punctual")
         scale = numpy.linalg.norm(places[frames[0]][:3, :3], axis=0)
-        spots = [tuple(float(v) for v in numpy.array(p) * scale) for p in places_on(first.outline, first.lamp.shape in ("DISK", "ELLIPSE"))]
+        spots = [
+            tuple(float(v) for v in numpy.array(p) * scale)
+            for p in places_on(first.outline, first.lamp.shape in ("DISK", "ELLIPSE"))
+        ]
         parent = self.node(item, {frame: unscaled(place) for frame, place in places.items()})
         children = document.json["nodes"][parent]["children"] = []
         for outer, inner, intensity in cones_for(first.spread / 2):
             powers = [max(float(states[f].power.max()), 0.0) for f in frames]
-            colours = [[float(c) / p for c in states[f].power] if p > 0 else [1.0, 1.0, 1.0] for f, p in zip(frames, powers)]
+            colours = [
+                [float(c) / p for c in states[f].power] if p > 0 else [1.0, 1.0, 1.0] for f, p in zip(frames, powers)
+            ]
             index = len(lights)
-            lights.append({"name": item.name, "type": "spot", "color": colours[0], "intensity": powers[0] * intensity / len(spots),
-                           "spot": {"innerConeAngle": inner, "outerConeAngle": outer}})
+            lights.append(
+                {
+                    "name": item.name,
+                    "type": "spot",
+                    "color": colours[0],
+                    "intensity": powers[0] * intensity / len(spots),
+                    "spot": {"innerConeAngle": inner, "outerConeAngle": outer},
+                }
+            )
             at = f"/extensions/KHR_lights_punctual/lights/{index}"
             self.changes(frames, [[p * intensity / len(spots)] for p in powers], f"{at}/intensity")
             self.changes(frames, colours, f"{at}/color")
             for place in spots:
                 children.append(document.append("nodes", {"name": item.name, "translation": list(place),
                                                           "extensions": {"KHR_lights_punctual": {"light": index}}}))
-        self.notes.baked(item.label, f"its spread: {len(children)} spots in its place; its shadows have steps, mirrors do not show it")
+        self.notes.baked(
+            item.label,
+            f"its spread: {len(children)} spots in its place; its shadows have steps, mirrors do not show it",
+        )
 
     def in_view(self, item):
         """Is the middle of a thing in the picture, at some frame?"""
         for frame in self.some(item):
             eye = self.record.items.get(self.record.cameras.get(frame))
-            if eye is not None and frame in eye.states and eye.states[frame].shows(eye.places[frame], item.places[frame][:3, 3]):
+            if (
+                eye is not None
+                and frame in eye.states
+                and eye.states[frame].shows(eye.places[frame], item.places[frame][:3, 3])
+            ):
                 return True
         return not self.record.cameras
 
@@ -110,15 +145,23 @@ class Lamps:
         first, lost = states[frames[0]], self.notes.lost
         if "visible_camera" in item.flags and self.in_view(item):
             lost(Damage.CAMERA, item.label, "the camera sees the shape of this lamp, which Blender hides")
-        if any(abs(states[f].area - first.area) > 1e-6 * first.area or abs(states[f].radius - first.radius) > 1e-6 for f in frames) \
-                and first.kind == "POINT":
+        if (
+            any(
+                abs(states[f].area - first.area) > 1e-6 * first.area or abs(states[f].radius - first.radius) > 1e-6
+                for f in frames
+            )
+            and first.kind == "POINT"
+        ):
             lost(Damage.MOTION, item.label, "its size stays that of the first frame; its power is kept")
         points, triangles = first.mesh()
         if first.kind == "POINT":
             points = gltf.axes(points)
             places = {frame: unturned(place) for frame, place in places.items()}
-        material = {"name": item.name, "pbrMetallicRoughness": {"baseColorFactor": [0.0, 0.0, 0.0, 1.0], "metallicFactor": 0.0},
-                    "extensions": self.specular_none()}
+        material = {
+            "name": item.name,
+            "pbrMetallicRoughness": {"baseColorFactor": [0.0, 0.0, 0.0, 1.0], "metallicFactor": 0.0},
+            "extensions": self.specular_none(),
+        }
         rows = [self.shine(states[f], first) for f in frames]
         top = max(max(rows[0]), 1e-9)
         material["emissiveFactor"] = [float(c / top) for c in rows[0]]
@@ -127,11 +170,21 @@ class Lamps:
         index = self.document.append("materials", material)
         make = self.document.accessor
         attributes = {"POSITION": make(points.astype("f4"), bounds=True, target=34962)}
-        primitive = {"attributes": attributes, "indices": make(triangles.reshape(-1).astype("u2"), target=34963), "material": index}
+        primitive = {
+            "attributes": attributes,
+            "indices": make(triangles.reshape(-1).astype("u2"), target=34963),
+            "material": index,
+        }
         mesh = self.document.append("meshes", {"name": item.name, "primitives": [primitive]})
-        self.node(item, places, mesh=mesh, extras={"hidden_from_camera": True} if "visible_camera" in item.flags else None)
+        self.node(
+            item, places, mesh=mesh, extras={"hidden_from_camera": True} if "visible_camera" in item.flags else None
+        )
         tops = [max(max(r), 1e-9) for r in rows]
-        self.changes(frames, [[t] for t in tops], f"/materials/{index}/extensions/KHR_materials_emissive_strength/emissiveStrength")
+        self.changes(
+            frames,
+            [[t] for t in tops],
+            f"/materials/{index}/extensions/KHR_materials_emissive_strength/emissiveStrength",
+        )
         self.changes(frames, [[c / t for c in r] for r, t in zip(rows, tops)], f"/materials/{index}/emissiveFactor")
 
     @staticmethod
@@ -190,9 +243,16 @@ class Cameras:
             return
         items = {frame: self.record.items[key] for frame, key in self.record.cameras.items()}
         states = [items[f].states[f] for f in self.frames()]
-        if len({tuple(round(s, 6) for s in state.shift) for state in states}) > 1 or len({state.kind for state in states}) > 1:
-            self.notes.lost(Damage.CAMERA, "the cuts", "cameras of the markers differ in shift or kind, which one camera cannot: render each range "
-                                                       "with CAMERA=NAME")
+        if (
+            len({tuple(round(s, 6) for s in state.shift) for state in states}) > 1
+            or len({state.kind for state in states}) > 1
+        ):
+            self.notes.lost(
+                Damage.CAMERA,
+                "the cuts",
+                "cameras of the markers differ in shift or kind, which one camera cannot: render each range "
+                "with CAMERA=NAME",
+            )
         camera = {"name": "Cuts", **states[0].gltf()}
         if any(abs(s) > 1e-9 for s in states[0].shift):
             camera["extras"] = {"lens_shift": [float(s) for s in states[0].shift]}

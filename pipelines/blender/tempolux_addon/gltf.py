@@ -18,7 +18,12 @@ def axes(points):
 
 class Document:
     def __init__(self, generator):
-        self.json = {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [{"nodes": []}], "nodes": []}
+        self.json = {
+            "asset": {"version": "2.0", "generator": generator},
+            "scene": 0,
+            "scenes": [{"nodes": []}],
+            "nodes": [],
+        }
         self.binary, self.kept, self.channels, self.inputs = bytearray(), {}, [], {}
 
     # ---- arrays and images ----
@@ -40,11 +45,17 @@ class Document:
         """Index of an accessor of (n) or (n, width) numbers; equal ones are stored once."""
         values = numpy.ascontiguousarray(values)
         flat = values.reshape(len(values), -1)
-        mark = hashlib.blake2b(values.tobytes(), digest_size=16, key=f"{values.dtype}{flat.shape}{bounds}".encode()[:64]).digest()
+        mark = hashlib.blake2b(
+            values.tobytes(), digest_size=16, key=f"{values.dtype}{flat.shape}{bounds}".encode()[:64]
+        ).digest()
         if mark not in self.kept:
             kind = values.dtype.str[1:]
-            accessor = {"bufferView": self.view(values.tobytes(), target), "componentType": KINDS[kind], "count": len(values),
-                        "type": WIDTHS[flat.shape[1]]}
+            accessor = {
+                "bufferView": self.view(values.tobytes(), target),
+                "componentType": KINDS[kind],
+                "count": len(values),
+                "type": WIDTHS[flat.shape[1]],
+            }
             if bounds:
                 accessor["min"], accessor["max"] = flat.min(axis=0).tolist(), flat.max(axis=0).tolist()
             self.kept[mark] = self.append("accessors", accessor)
@@ -55,7 +66,12 @@ class Document:
         if mark not in self.kept:
             kind = "image/png" if data[:4] == b"\x89PNG" else "image/jpeg"
             self.kept[mark] = self.append("images", {"name": name, "bufferView": self.view(data), "mimeType": kind})
-        sampler = {"magFilter": 9728 if closest else 9729, "minFilter": 9728 if closest else 9987, "wrapS": wrap, "wrapT": wrap}
+        sampler = {
+            "magFilter": 9728 if closest else 9729,
+            "minFilter": 9728 if closest else 9987,
+            "wrapS": wrap,
+            "wrapT": wrap,
+        }
         return self.once("textures", {"sampler": self.once("samplers", sampler), "source": self.kept[mark]})
 
     def once(self, kind, value):
@@ -90,8 +106,13 @@ class Document:
 
     def write(self, path):
         if self.channels:
-            self.json["animations"] = [{"name": "shot", "samplers": [s for s, _ in self.channels],
-                                        "channels": [{"sampler": i, "target": t} for i, (_, t) in enumerate(self.channels)]}]
+            self.json["animations"] = [
+                {
+                    "name": "shot",
+                    "samplers": [s for s, _ in self.channels],
+                    "channels": [{"sampler": i, "target": t} for i, (_, t) in enumerate(self.channels)],
+                }
+            ]
         while len(self.binary) % 4:
             self.binary.append(0)
         if self.binary:
@@ -156,7 +177,12 @@ def completed(turn, scale):
 
 def quaternion(m):
     """x y z w of a rotation; the largest part is found first."""
-    squares = [1 + m[0, 0] - m[1, 1] - m[2, 2], 1 - m[0, 0] + m[1, 1] - m[2, 2], 1 - m[0, 0] - m[1, 1] + m[2, 2], 1 + m.trace()]
+    squares = [
+        1 + m[0, 0] - m[1, 1] - m[2, 2],
+        1 - m[0, 0] + m[1, 1] - m[2, 2],
+        1 - m[0, 0] - m[1, 1] + m[2, 2],
+        1 + m.trace(),
+    ]
     k = int(numpy.argmax(squares))
     q = numpy.empty(4)
     if k == 3:

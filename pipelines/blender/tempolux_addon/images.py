@@ -67,8 +67,11 @@ def coordinates(socket, stack):
     if abs(turned[0]) > 1e-6 or abs(turned[1]) > 1e-6:
         return None
     angle = turned[2]
-    return inner[0], {"offset": [where[0] - scale[1] * math.sin(angle), 1 - where[1] - scale[1] * math.cos(angle)], "rotation": angle,
-                      "scale": [scale[0], scale[1]]}
+    return inner[0], {
+        "offset": [where[0] - scale[1] * math.sin(angle), 1 - where[1] - scale[1] * math.cos(angle)],
+        "rotation": angle,
+        "scale": [scale[0], scale[1]],
+    }
 
 
 def pixels_of(image):
@@ -117,7 +120,12 @@ def png(pixels):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     header = struct.pack(">IIBBBBB", width, height, 8, 6 if parts == 4 else 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))
+        + chunk(b"IEND", b"")
+    )
 
 
 def resized(pixels, height, width):

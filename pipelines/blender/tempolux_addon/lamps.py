@@ -8,7 +8,9 @@ import numpy
 
 from .colour import rec709
 
-BALL_STEPS = 3           # of an icosphere: 642 corners; its mean outline is .6 % less than the ball's, which its radiance makes up for
+BALL_STEPS = (
+    3  # of an icosphere: 642 corners; its mean outline is .6 % less than the ball's, which its radiance makes up for
+)
 
 
 class LampState:
@@ -98,7 +100,12 @@ def measured_gain():
     made = []
     try:
         stage.render.engine = "CYCLES"
-        stage.cycles.samples, stage.cycles.use_denoising, stage.cycles.device, stage.cycles.max_bounces = 16, False, "CPU", 0
+        stage.cycles.samples, stage.cycles.use_denoising, stage.cycles.device, stage.cycles.max_bounces = (
+            16,
+            False,
+            "CPU",
+            0,
+        )
         stage.render.resolution_x = stage.render.resolution_y = 16
         stage.render.resolution_percentage = 100
         settings = stage.render.image_settings
@@ -106,7 +113,9 @@ def measured_gain():
         lamp = bpy.data.lights.new("tempolux lamp", "AREA")
         lamp.energy, lamp.shape, lamp.size = 1000, "SQUARE", 1
         mesh = bpy.data.meshes.new("tempolux lamp")
-        mesh.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])   # without a material: matte of .8
+        mesh.from_pydata(
+            [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)]
+        )  # without a material: matte of .8
         lens = bpy.data.cameras.new("tempolux lamp")
         lens.type, lens.ortho_scale = "ORTHO", .5
         for data, height in ((lamp, HEIGHT), (mesh, 0), (lens, 1)):
@@ -160,10 +169,42 @@ def ball(radius):
 def icosphere(steps):
     """Points on the unit ball and triangles, counter-clockwise from outside."""
     g = (1 + math.sqrt(5)) / 2
-    points = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1),
-              (-g, 0, -1), (-g, 0, 1)]
-    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
-             (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    points = [
+        (-1, g, 0),
+        (1, g, 0),
+        (-1, -g, 0),
+        (1, -g, 0),
+        (0, -1, g),
+        (0, 1, g),
+        (0, -1, -g),
+        (0, 1, -g),
+        (g, 0, -1),
+        (g, 0, 1),
+        (-g, 0, -1),
+        (-g, 0, 1),
+    ]
+    faces = [
+        (0, 11, 5),
+        (0, 5, 1),
+        (0, 1, 7),
+        (0, 7, 10),
+        (0, 10, 11),
+        (1, 5, 9),
+        (5, 11, 4),
+        (11, 10, 2),
+        (10, 7, 6),
+        (7, 1, 8),
+        (3, 9, 4),
+        (3, 4, 2),
+        (3, 2, 6),
+        (3, 6, 8),
+        (3, 8, 9),
+        (4, 9, 5),
+        (2, 4, 11),
+        (6, 2, 10),
+        (8, 6, 7),
+        (9, 8, 1),
+    ]
     points = [numpy.array(p) / math.sqrt(1 + g * g) for p in points]
     for _ in range(steps):
         middle, finer = {}, []

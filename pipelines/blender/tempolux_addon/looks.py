@@ -9,10 +9,31 @@ class Look(dict):
     """Values of a Principled surface; names of losses in `losses`: (how bad, text)."""
 
     def __init__(self, **values):
-        super().__init__(base=(.8, .8, .8), alpha=1.0, metallic=0.0, roughness=.5, normal=None, emission=BLACK, strength=0.0,
-                         transmission=0.0, ior=1.5, level=.5, tint=WHITE, coat=0.0, coat_roughness=.03, sheen=0.0, sheen_roughness=.5,
-                         sheen_tint=WHITE, film=0.0, film_ior=1.33, anisotropic=0.0, anisotropic_rotation=0.0, subsurface=0.0,
-                         sheet=0.0, displacement=None)
+        super().__init__(
+            base=(0.8, 0.8, 0.8),
+            alpha=1.0,
+            metallic=0.0,
+            roughness=0.5,
+            normal=None,
+            emission=BLACK,
+            strength=0.0,
+            transmission=0.0,
+            ior=1.5,
+            level=0.5,
+            tint=WHITE,
+            coat=0.0,
+            coat_roughness=0.03,
+            sheen=0.0,
+            sheen_roughness=0.5,
+            sheen_tint=WHITE,
+            film=0.0,
+            film_ior=1.33,
+            anisotropic=0.0,
+            anisotropic_rotation=0.0,
+            subsurface=0.0,
+            sheet=0.0,
+            displacement=None,
+        )
         self.update(values)
         self.losses = []
 
@@ -39,12 +60,31 @@ def bent_normal(node, stack):
 
 
 def principled(node, stack):
-    look = Look(normal=bent_normal(node, stack), **inputs(
-        node, stack, base="Base Color", alpha="Alpha", metallic="Metallic", roughness="Roughness", ior="IOR",
-        emission=("Emission Color", "Emission"), strength="Emission Strength", transmission=("Transmission Weight", "Transmission"),
-        level=("Specular IOR Level", "Specular"), coat=("Coat Weight", "Clearcoat"), coat_roughness=("Coat Roughness", "Clearcoat Roughness"),
-        sheen=("Sheen Weight", "Sheen"), sheen_roughness="Sheen Roughness", film="Thin Film Thickness", film_ior="Thin Film IOR",
-        anisotropic="Anisotropic", anisotropic_rotation="Anisotropic Rotation", subsurface=("Subsurface Weight", "Subsurface")))
+    look = Look(
+        normal=bent_normal(node, stack),
+        **inputs(
+            node,
+            stack,
+            base="Base Color",
+            alpha="Alpha",
+            metallic="Metallic",
+            roughness="Roughness",
+            ior="IOR",
+            emission=("Emission Color", "Emission"),
+            strength="Emission Strength",
+            transmission=("Transmission Weight", "Transmission"),
+            level=("Specular IOR Level", "Specular"),
+            coat=("Coat Weight", "Clearcoat"),
+            coat_roughness=("Coat Roughness", "Clearcoat Roughness"),
+            sheen=("Sheen Weight", "Sheen"),
+            sheen_roughness="Sheen Roughness",
+            film="Thin Film Thickness",
+            film_ior="Thin Film IOR",
+            anisotropic="Anisotropic",
+            anisotropic_rotation="Anisotropic Rotation",
+            subsurface=("Subsurface Weight", "Subsurface"),
+        ),
+    )
     tint = pick(node.inputs, "Specular Tint")
     if tint is not None:
         value = resolve(tint, stack)
@@ -62,14 +102,23 @@ def principled(node, stack):
         if colour is not None and look["subsurface"] != 0:
             look["base"] = blend(look["subsurface"], look["base"], resolve(colour, stack))
         rough = pick(node.inputs, "Transmission Roughness")
-        if rough is not None and is_constant(look["transmission"]) and as_number(look["transmission"]) > 0 and resolve(rough, stack) != 0:
+        if (
+            rough is not None
+            and is_constant(look["transmission"])
+            and as_number(look["transmission"]) > 0
+            and resolve(rough, stack) != 0
+        ):
             look.lose("Transmission Roughness is left out")
     elif is_constant(look["base"]) and is_constant(look["transmission"]):
         # Since 4.0 glass takes the root of the colour at each of its two surfaces.
         look["base"] = tuple(max(c, 0.0) ** (1 - as_number(look["transmission"]) / 2) for c in as_tuple(look["base"]))
     if not is_constant(look["metallic"]) or 0 < look["metallic"] < 1:
         half_metal(look)
-    if pick(node.inputs, "Coat Tint") is not None and look["coat"] != 0 and resolve(pick(node.inputs, "Coat Tint"), stack) != WHITE:
+    if (
+        pick(node.inputs, "Coat Tint") is not None
+        and look["coat"] != 0
+        and resolve(pick(node.inputs, "Coat Tint"), stack) != WHITE
+    ):
         look.lose("the tint of its coat is left out")
     rough = pick(node.inputs, "Diffuse Roughness")
     if rough is not None and resolve(rough, stack) != 0:
@@ -90,8 +139,14 @@ def half_metal(look):
     reflected = tuple((1 - share) * min(1.0, front * t) + share * c for t, c in zip(as_tuple(look["tint"]), base))
     top = min(max(max(reflected), 1e-6), .99)
     kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
-    look.update(metallic=0.0, base=tuple(min(1.0, kept * c) for c in base), level=.5, tint=tuple(c / top for c in reflected),
-                ior=(1 + top ** .5) / (1 - top ** .5), old_specular=False)
+    look.update(
+        metallic=0.0,
+        base=tuple(min(1.0, kept * c) for c in base),
+        level=0.5,
+        tint=tuple(c / top for c in reflected),
+        ior=(1 + top**0.5) / (1 - top**0.5),
+        old_specular=False,
+    )
 
 
 def over_all_angles(front):
@@ -101,8 +156,18 @@ def over_all_angles(front):
 
 def conductor(node, stack):
     """Metallic BSDF (4.3): its colour, or what its index of refraction and extinction reflect from in front."""
-    look = Look(metallic=1.0, normal=bent_normal(node, stack),
-                **inputs(node, stack, base="Base Color", roughness="Roughness", anisotropic="Anisotropy", anisotropic_rotation="Rotation"))
+    look = Look(
+        metallic=1.0,
+        normal=bent_normal(node, stack),
+        **inputs(
+            node,
+            stack,
+            base="Base Color",
+            roughness="Roughness",
+            anisotropic="Anisotropy",
+            anisotropic_rotation="Rotation",
+        ),
+    )
     if getattr(node, "fresnel_type", "F82") == "PHYSICAL_CONDUCTOR":
         n, k = (as_tuple(resolve(pick(node.inputs, name), stack)) for name in ("IOR", "Extinction"))
         look["base"] = tuple(((a - 1) ** 2 + b * b) / ((a + 1) ** 2 + b * b) for a, b in zip(n, k))
@@ -110,7 +175,11 @@ def conductor(node, stack):
 
 
 def glass(node, stack):
-    return Look(transmission=1.0, normal=bent_normal(node, stack), **inputs(node, stack, base="Color", roughness="Roughness", ior="IOR"))
+    return Look(
+        transmission=1.0,
+        normal=bent_normal(node, stack),
+        **inputs(node, stack, base="Color", roughness="Roughness", ior="IOR"),
+    )
 
 
 def simple(**fixed):
@@ -168,10 +237,24 @@ def hair(node, stack):
 
 
 SHADERS = {
-    "BSDF_PRINCIPLED": principled, "BSDF_DIFFUSE": diffuse, "BSDF_GLOSSY": glossy, "BSDF_ANISOTROPIC": glossy, "BSDF_METALLIC": conductor,
-    "BSDF_GLASS": glass, "BSDF_REFRACTION": glass, "BSDF_TRANSLUCENT": translucent, "SUBSURFACE_SCATTERING": subsurface,
-    "BSDF_SHEEN": sheen, "BSDF_VELVET": sheen, "EMISSION": emission, "BACKGROUND": emission, "BSDF_TRANSPARENT": transparent, "BSDF_HAIR": hair,
-    "BSDF_HAIR_PRINCIPLED": hair, "BSDF_TOON": hair, "EEVEE_SPECULAR": hair,
+    "BSDF_PRINCIPLED": principled,
+    "BSDF_DIFFUSE": diffuse,
+    "BSDF_GLOSSY": glossy,
+    "BSDF_ANISOTROPIC": glossy,
+    "BSDF_METALLIC": conductor,
+    "BSDF_GLASS": glass,
+    "BSDF_REFRACTION": glass,
+    "BSDF_TRANSLUCENT": translucent,
+    "SUBSURFACE_SCATTERING": subsurface,
+    "BSDF_SHEEN": sheen,
+    "BSDF_VELVET": sheen,
+    "EMISSION": emission,
+    "BACKGROUND": emission,
+    "BSDF_TRANSPARENT": transparent,
+    "BSDF_HAIR": hair,
+    "BSDF_HAIR_PRINCIPLED": hair,
+    "BSDF_TOON": hair,
+    "EEVEE_SPECULAR": hair,
 }
 
 
@@ -210,8 +293,13 @@ def coated(matte_look, mirror, reflectance):
     look = Look(**matte_look)
     top = min(max(max(as_tuple(reflectance)), 1e-6), .9999)
     root = top ** .5
-    look.update(ior=(1 + root) / (1 - root), level=.5, tint=tuple(c / top for c in as_tuple(reflectance)), roughness=mirror["roughness"],
-                old_specular=False)
+    look.update(
+        ior=(1 + root) / (1 - root),
+        level=0.5,
+        tint=tuple(c / top for c in as_tuple(reflectance)),
+        roughness=mirror["roughness"],
+        old_specular=False,
+    )
     return look
 
 
@@ -263,7 +351,16 @@ def blended(factor, a, b):
     look.losses = a.losses + b.losses
     weight_a, weight_b = weight_of(a), weight_of(b)
     for key in set(a) | set(b):
-        if key in ("normal", "displacement", "emission", "strength", "through", "old_specular", "reflects", "one_for_all_angles"):
+        if key in (
+            "normal",
+            "displacement",
+            "emission",
+            "strength",
+            "through",
+            "old_specular",
+            "reflects",
+            "one_for_all_angles",
+        ):
             continue
         if key in ("base", "roughness", "ior", "level", "tint") and weight_a == 0:
             look[key] = b[key]
@@ -285,7 +382,9 @@ def blended(factor, a, b):
 
 def weight_of(look):
     """0 for a look that only emits."""
-    return 0 if look["base"] == BLACK and look["level"] == 0 and look["transmission"] == 0 and look["strength"] != 0 else 1
+    return (
+        0 if look["base"] == BLACK and look["level"] == 0 and look["transmission"] == 0 and look["strength"] != 0 else 1
+    )
 
 
 def add(a, b):
@@ -294,7 +393,9 @@ def add(a, b):
             look = Look(**other)
             look.losses = a.losses + b.losses
             if shine["strength"] != 0:
-                look["emission"] = times(shine["emission"], shine["strength"]) if other["strength"] == 0 else other["emission"]
+                look["emission"] = (
+                    times(shine["emission"], shine["strength"]) if other["strength"] == 0 else other["emission"]
+                )
                 look["strength"] = 1.0 if other["strength"] == 0 else other["strength"]
             return look
     look = mix(.5, a, b)
@@ -333,7 +434,10 @@ def look_of(material):
     """(look, volume): the surface of a material, None where it has none; the node of its volume, or None."""
     tree = material.node_tree
     if tree is None or not getattr(material, "use_nodes", True):
-        return Look(base=plain_colour(material.diffuse_color), metallic=material.metallic, roughness=material.roughness), None
+        return (
+            Look(base=plain_colour(material.diffuse_color), metallic=material.metallic, roughness=material.roughness),
+            None,
+        )
     output = output_of(tree)
     if output is None:
         return matte(BLACK), None

@@ -2,7 +2,17 @@
 import numpy
 
 from .colour import rec709, rec709_array
-from .factors import ANIMATED, DEFAULTS, STRENGTH, as_number_or, leaves, plain_material, set_emission, set_extensions, unit
+from .factors import (
+    ANIMATED,
+    DEFAULTS,
+    STRENGTH,
+    as_number_or,
+    leaves,
+    plain_material,
+    set_emission,
+    set_extensions,
+    unit,
+)
 from .images import file_bytes, picture_of, pixels_of, png, resized, to_srgb
 from .looks import fog_of
 from .notes import Damage
@@ -12,14 +22,30 @@ RENDERED = {"KHR_materials_specular", "KHR_materials_ior", "KHR_materials_transm
             "KHR_materials_emissive_strength"}     # extensions that tempolux renders; others are written and named
 WORDS = {"KHR_materials_clearcoat": "coat", "KHR_materials_sheen": "sheen", "KHR_materials_iridescence": "thin film",
          "KHR_materials_anisotropy": "anisotropy"}
-SINGLE = ("ior", "level", "tint", "coat", "coat_roughness", "sheen", "sheen_roughness", "sheen_tint", "film", "film_ior", "anisotropic",
-          "anisotropic_rotation")                  # no texture of these: a mean
-FLAT = .004                                        # scatter of a normal's two parts, as a map has them: a step of 8 bits, half a degree
+SINGLE = (
+    "ior",
+    "level",
+    "tint",
+    "coat",
+    "coat_roughness",
+    "sheen",
+    "sheen_roughness",
+    "sheen_tint",
+    "film",
+    "film_ior",
+    "anisotropic",
+    "anisotropic_rotation",
+)  # no texture of these: a mean
+FLAT = 0.004  # scatter of a normal's two parts, as a map has them: a step of 8 bits, half a degree
 
 
 def linked(look):
     """Names of the values that are not constants."""
-    return [key for key, value in look.items() if value is not None and not isinstance(value, bool) and not is_constant(value)]
+    return [
+        key
+        for key, value in look.items()
+        if value is not None and not isinstance(value, bool) and not is_constant(value)
+    ]
 
 
 def colour_layer(value):
@@ -36,8 +62,9 @@ def needs_bake(look):
     """Is there a value that glTF cannot say? Colour attributes count as such, as a mesh may lack them."""
     if look is None:
         return False
-    return any(picture_of(look[key]) is None and (key != "normal" or normal_map(look[key]) is None) for key in linked(look))\
-        or bool(look["displacement"])
+    return any(
+        picture_of(look[key]) is None and (key != "normal" or normal_map(look[key]) is None) for key in linked(look)
+    ) or bool(look["displacement"])
 
 
 def normal_map(value):
@@ -63,7 +90,13 @@ class Materials:
         """(index, UV layers, colour attribute): the file's material for one slot of a mesh. Layers: names, or None for the bake's."""
         look, volume = self.shot.surface(material)
         own = topology if material is not None and needs_bake(look) else None
-        key = (material.name_full if material else "", solid > 0, own, slot if own else 0, tuple(shape.uvs) if linked(look) else ())
+        key = (
+            material.name_full if material else "",
+            solid > 0,
+            own,
+            slot if own else 0,
+            tuple(shape.uvs) if linked(look) else (),
+        )
         if key not in self.made:
             self.made[key] = self.make(material, look, volume, shape, topology, slot, solid)
         return self.made[key]
@@ -88,7 +121,9 @@ class Materials:
         for extension in extensions:
             self.document.use(extension)
             if extension not in RENDERED:
-                self.shot.notes.lost(Damage.DETAIL, name, f"{WORDS[extension]} is written into the file; tempolux does not render it yet")
+                self.shot.notes.lost(
+                    Damage.DETAIL, name, f"{WORDS[extension]} is written into the file; tempolux does not render it yet"
+                )
         if as_number_or(look["subsurface"], 1) > 0:
             self.shot.notes.lost(Damage.MATERIAL, name, "subsurface scattering is left out: it is matte")
         self.document.append("materials", result)
@@ -116,7 +151,9 @@ class Materials:
         if moved:
             self.shot.notes.keep("materials that change")
         else:
-            self.shot.notes.lost(Damage.MOTION, name, "changes in its nodes are left out: it looks as in the frame that is open")
+            self.shot.notes.lost(
+                Damage.MOTION, name, "changes in its nodes are left out: it looks as in the frame that is open"
+            )
 
 
 def light_emission(looks):
@@ -133,8 +170,11 @@ def light_emission(looks):
 def has_room(result, path, value):
     """Puts the first frame's value where it is not in the material; False where a texture stands for it."""
     *parents, last = path.strip("/").split("/")
-    if {"baseColorFactor": "baseColorTexture", "emissiveFactor": "emissiveTexture", "emissiveStrength": "emissiveTexture"}.get(last) in \
-            {**result, **result["pbrMetallicRoughness"]}:
+    if {
+        "baseColorFactor": "baseColorTexture",
+        "emissiveFactor": "emissiveTexture",
+        "emissiveStrength": "emissiveTexture",
+    }.get(last) in {**result, **result["pbrMetallicRoughness"]}:
         return False
     inner = result
     for parent in parents:
@@ -148,7 +188,14 @@ class Maker:
 
     def __init__(self, materials, name, material, look, shape, topology, slot):
         self.owner, self.shot, self.document = materials, materials.shot, materials.document
-        self.name, self.material, self.look, self.shape, self.topology, self.slot = name, material, look, shape, topology, slot
+        self.name, self.material, self.look, self.shape, self.topology, self.slot = (
+            name,
+            material,
+            look,
+            shape,
+            topology,
+            slot,
+        )
         self.layers, self.colours, self.means, self.baked = [], None, {}, []
 
     def fill(self, result):
@@ -235,7 +282,9 @@ class Maker:
         if direct and not is_constant(alpha):
             direct = self.fits(mask) and (is_constant(colour) or mask.place() == picture.place())
         if direct:
-            pbr["baseColorTexture"] = self.info(self.image(self.base_image(picture, mask), picture or mask), picture or mask)
+            pbr["baseColorTexture"] = self.info(
+                self.image(self.base_image(picture, mask), picture or mask), picture or mask
+            )
             if is_constant(colour):
                 pbr["baseColorFactor"][:3] = [unit(c) for c in rec709(as_tuple(colour))]
             return
@@ -245,7 +294,9 @@ class Maker:
         else:
             pixels[..., 3] = 1
         if pixels.shape[0] == 1:
-            pbr["baseColorFactor"] = [unit(c) for c in pixels[0, 0, :3]] + [unit(pixels[0, 0, 3] if not is_constant(alpha) else as_number(alpha))]
+            pbr["baseColorFactor"] = [unit(c) for c in pixels[0, 0, :3]] + [
+                unit(pixels[0, 0, 3] if not is_constant(alpha) else as_number(alpha))
+            ]
             return
         pixels[..., :3] = to_srgb(pixels[..., :3])
         data = png(pixels if not is_constant(alpha) else pixels[..., :3])
@@ -262,7 +313,9 @@ class Maker:
             pixels[..., :3] = 1
         if mask:
             other = resized(pixels_of(mask.image), *pixels.shape[:2])
-            pixels[..., 3] = other[..., mask.channel] if mask.channel is not None else other[..., :3] @ (.2126, .7152, .0722)
+            pixels[..., 3] = (
+                other[..., mask.channel] if mask.channel is not None else other[..., :3] @ (0.2126, 0.7152, 0.0722)
+            )
         pixels[..., :3] = to_srgb(pixels[..., :3])
         return png(pixels if mask else pixels[..., :3])
 
@@ -273,18 +326,26 @@ class Maker:
         pbr = result["pbrMetallicRoughness"]
         pictures = [picture_of(v) for v in (rough, metal)]
         linked_ones = [p for p in pictures if p]
-        direct = all(is_constant(v) or self.fits(p) for v, p in zip((rough, metal), pictures)) and len({p.place() for p in linked_ones}) == 1
+        direct = (
+            all(is_constant(v) or self.fits(p) for v, p in zip((rough, metal), pictures))
+            and len({p.place() for p in linked_ones}) == 1
+        )
         if direct:
             size = linked_ones[0].image.size
             pixels = numpy.ones((size[1], size[0], 3), "f4")
             for channel, picture in zip((1, 2), pictures):
                 if picture:
                     source = resized(pixels_of(picture.image), *pixels.shape[:2])
-                    pixels[..., channel] = source[..., :3] @ numpy.array((.2126, .7152, .0722), "f4") if picture.channel is None \
+                    pixels[..., channel] = (
+                        source[..., :3] @ numpy.array((0.2126, 0.7152, 0.0722), "f4")
+                        if picture.channel is None
                         else source[..., picture.channel]
+                    )
             info = self.info(self.image(png(pixels), linked_ones[0]), linked_ones[0])
         else:
-            pixels = self.bake("roughness" if is_constant(metal) else "roughness and metallic", [0.0, rough, metal])[..., :3]
+            pixels = self.bake("roughness" if is_constant(metal) else "roughness and metallic", [0.0, rough, metal])[
+                ..., :3
+            ]
             if pixels.shape[0] == 1:
                 pbr.update(roughnessFactor=unit(pixels[0, 0, 1]), metallicFactor=unit(pixels[0, 0, 2]))
                 return
@@ -313,7 +374,9 @@ class Maker:
         if float(covered(pixels)[:, :2].std()) < FLAT:
             self.baked[-1] = "bumps (flat to half a degree, left out)"
             return
-        result["normalTexture"] = self.info(self.document.texture(png(pixels[..., :3]), 33071, name=f"{self.name} bumps"))
+        result["normalTexture"] = self.info(
+            self.document.texture(png(pixels[..., :3]), 33071, name=f"{self.name} bumps")
+        )
 
     def emission(self, result):
         value = times(self.look["emission"], self.look["strength"])
@@ -334,7 +397,9 @@ class Maker:
             if pixels.shape[0] == 1:
                 set_emission(result, tuple(float(c) for c in pixels[0, 0, :3]))
                 return
-            texture = self.info(self.document.texture(png(to_srgb(pixels[..., :3] / strength)), 33071, name=f"{self.name} emission"))
+            texture = self.info(
+                self.document.texture(png(to_srgb(pixels[..., :3] / strength)), 33071, name=f"{self.name} emission")
+            )
         result["emissiveFactor"], result["emissiveTexture"] = [1.0, 1.0, 1.0], texture
         extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": max(0.0, strength)}
 
@@ -348,7 +413,9 @@ class Maker:
         if pixels.shape[0] == 1:
             extension["transmissionFactor"] = unit(pixels[0, 0, 0])
         else:
-            extension["transmissionTexture"] = self.info(self.document.texture(png(pixels), 33071, name=f"{self.name} transmission"))
+            extension["transmissionTexture"] = self.info(
+                self.document.texture(png(pixels), 33071, name=f"{self.name} transmission")
+            )
 
 
 def covered(pixels):

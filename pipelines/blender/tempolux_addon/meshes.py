@@ -38,7 +38,9 @@ class Meshes:
             self.add_sequence(item, shapes, places)
             return
         elif len(topologies) > 1:
-            self.notes.lost(Damage.DETAIL, item.label, "its texture coordinates change: they stay those of the first frame")
+            self.notes.lost(
+                Damage.DETAIL, item.label, "its texture coordinates change: they stay those of the first frame"
+            )
         mesh, weights = self.mesh(item, shapes)
         if mesh is None:
             return
@@ -54,9 +56,19 @@ class Meshes:
         materials = next(iter(shapes.values())).materials
         if not all(m is not None and self.surface(m)[0] is None for m in materials):
             return False
-        domain = next((m.domain_settings for m in item.original.modifiers if m.type == "FLUID" and m.fluid_type == "DOMAIN"), None) \
-            if hasattr(item.original, "modifiers") else None
-        pattern = pattern_of(os.path.join(bpy.path.abspath(domain.cache_directory), "data", "fluid_data_0001.vdb")) if domain else None
+        domain = (
+            next(
+                (m.domain_settings for m in item.original.modifiers if m.type == "FLUID" and m.fluid_type == "DOMAIN"),
+                None,
+            )
+            if hasattr(item.original, "modifiers")
+            else None
+        )
+        pattern = (
+            pattern_of(os.path.join(bpy.path.abspath(domain.cache_directory), "data", "fluid_data_0001.vdb"))
+            if domain
+            else None
+        )
         self.take_smoke(item.label, pattern)
         return True
 
@@ -70,11 +82,27 @@ class Meshes:
             lost(Damage.OBJECT, item.label, "a holdout becomes a black object")
         if flags & {"visible_camera", "indirect_only"}:
             if not any(m and self.shines(m) for s in shapes.values() for m in s.materials):
-                lost(Damage.LIGHT, item.label, "is hidden from the camera: it is left out, with its shadow and the light it reflects")
+                lost(
+                    Damage.LIGHT,
+                    item.label,
+                    "is hidden from the camera: it is left out, with its shadow and the light it reflects",
+                )
                 return True
             lost(Damage.OBJECT, item.label, "is hidden from the camera in Blender: it is seen here, as it shines")
-        if flags & {"visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter", "visible_shadow"}:
-            words = ", ".join(sorted(f.replace("visible_", "").replace("_", " ") for f in flags if f.startswith("visible_") and f != "visible_camera"))
+        if flags & {
+            "visible_diffuse",
+            "visible_glossy",
+            "visible_transmission",
+            "visible_volume_scatter",
+            "visible_shadow",
+        }:
+            words = ", ".join(
+                sorted(
+                    f.replace("visible_", "").replace("_", " ")
+                    for f in flags
+                    if f.startswith("visible_") and f != "visible_camera"
+                )
+            )
             lost(Damage.LIGHT, item.label, f"is hidden from rays ({words}) in Blender, not here")
         if "light_linking" in flags:
             lost(Damage.LIGHT, item.label, "light linking is left out: all lamps reach all objects")
@@ -96,7 +124,9 @@ class Meshes:
                 moved.points = (shape.points @ place[:3, :3].T + place[:3, 3]).astype("f4")
                 if shape.normals is not None:
                     normals = shape.normals @ numpy.linalg.pinv(place[:3, :3])
-                    moved.normals = (normals / numpy.maximum(numpy.linalg.norm(normals, axis=1, keepdims=True), 1e-20)).astype("f4")
+                    moved.normals = (
+                        normals / numpy.maximum(numpy.linalg.norm(normals, axis=1, keepdims=True), 1e-20)
+                    ).astype("f4")
                 if numpy.linalg.det(place[:3, :3]) < 0:
                     moved.corners = shape.corners[:, ::-1]
                 moved.bake_topology = getattr(shape, "bake_topology", None) or shape.topology()
@@ -116,7 +146,9 @@ class Meshes:
             if mesh is not None:
                 self.node(part, {frame: places[frame] for frame in frames}, mesh=mesh, weights=weights)
         self.notes.keep("objects")
-        self.notes.baked(item.label, f"its faces change: {len(by_shape)} meshes, {megabytes(len(self.document.binary) - before)}")
+        self.notes.baked(
+            item.label, f"its faces change: {len(by_shape)} meshes, {megabytes(len(self.document.binary) - before)}"
+        )
 
     def mesh(self, item, shapes):
         """(mesh, weights by frame): a mesh with the morph targets that the shapes need."""
@@ -131,11 +163,16 @@ class Meshes:
             self.geometry[mark] = self.make_mesh(item, list(order.values()), holdout)
             targets = self.geometry[mark][1]
             if len(order) > 1 and targets is not None:
-                self.notes.baked(item.label, f"its deformation: {targets.shape[1]} shapes for {len(order)} different frames, "
-                                            f"{megabytes(len(self.document.binary) - before)}")
+                self.notes.baked(
+                    item.label,
+                    f"its deformation: {targets.shape[1]} shapes for {len(order)} different frames, "
+                    f"{megabytes(len(self.document.binary) - before)}",
+                )
         index, weights = self.geometry[mark]
         numbers = {key: row for row, key in enumerate(order)}
-        return index, {frame: weights[numbers[id(shape)]] for frame, shape in shapes.items()} if weights is not None else None
+        return index, (
+            {frame: weights[numbers[id(shape)]] for frame, shape in shapes.items()} if weights is not None else None
+        )
 
     def make_mesh(self, item, order, holdout):
         shape = order[0]
@@ -148,7 +185,9 @@ class Meshes:
         for slot in numpy.unique(shape.slots):
             material = shape.materials[slot]
             if material is not None and self.surface(material)[0] is None:
-                self.notes.lost(Damage.DETAIL, item.label, f"its faces with only a volume, {material.name}, are left out")
+                self.notes.lost(
+                    Damage.DETAIL, item.label, f"its faces with only a volume, {material.name}, are left out"
+                )
                 continue
             primitives.append(self.primitive(shape, order, morph, int(slot), solid, holdout))
         if not primitives:
@@ -160,8 +199,15 @@ class Meshes:
 
     def thickness(self, shape):
         """Mean chord of a closed body of glass, 4 volume / area (Cauchy); 0 for other meshes."""
-        glass = [m for m in shape.materials if m and self.surface(m)[0] is not None
-                 and not (is_constant(self.surface(m)[0]["transmission"]) and as_number(self.surface(m)[0]["transmission"]) == 0)]
+        glass = [
+            m
+            for m in shape.materials
+            if m
+            and self.surface(m)[0] is not None
+            and not (
+                is_constant(self.surface(m)[0]["transmission"]) and as_number(self.surface(m)[0]["transmission"]) == 0
+            )
+        ]
         if not glass:
             return 0.0
         volume, area = shape.volume_and_area()
@@ -180,7 +226,11 @@ class Meshes:
         for name in layers:
             uv = self.materials.baker.unwrapped[topology][1] if name is None else shape.uvs[name]
             sets.append(uv[loops])
-        for values in ([shape.normals[loops]] if shape.normals is not None else []) + sets + ([shape.colours[colours][loops]] if colours else []):
+        for values in (
+            ([shape.normals[loops]] if shape.normals is not None else [])
+            + sets
+            + ([shape.colours[colours][loops]] if colours else [])
+        ):
             columns.append(numpy.ascontiguousarray(values, "f4").view("i4"))
         rows = numpy.concatenate(columns, axis=1)
         _, index, inverse = numpy.unique(rows, axis=0, return_index=True, return_inverse=True)
@@ -191,11 +241,19 @@ class Meshes:
         if shape.normals is not None:
             attributes["NORMAL"] = make(gltf.axes(shape.normals[corner]), target=34962)
         for k, uv in enumerate(sets):
-            attributes[f"TEXCOORD_{k}"] = make(numpy.stack([uv[index, 0], 1 - uv[index, 1]], axis=1).astype("f4"), target=34962)
+            attributes[f"TEXCOORD_{k}"] = make(
+                numpy.stack([uv[index, 0], 1 - uv[index, 1]], axis=1).astype("f4"), target=34962
+            )
         if colours:
-            attributes["COLOR_0"] = make(numpy.clip(shape.colours[colours][corner][:, :3], 0, None).astype("f4"), target=34962)
+            attributes["COLOR_0"] = make(
+                numpy.clip(shape.colours[colours][corner][:, :3], 0, None).astype("f4"), target=34962
+            )
         kind = "u2" if len(index) < 65535 else "u4"
-        result = {"attributes": attributes, "indices": make(inverse.reshape(-1).astype(kind), target=34963), "material": number}
+        result = {
+            "attributes": attributes,
+            "indices": make(inverse.reshape(-1).astype(kind), target=34963),
+            "material": number,
+        }
         if morph is not None and morph.weights.shape[1]:
             targets = [{"POSITION": make(gltf.axes(t[vertex]), bounds=True)} for t in morph.targets]
             if shape.normals is not None and all(s.normals is not None for s in order):

@@ -12,14 +12,25 @@ class Nodes:
     def node(self, item, places, weights=None, extras=None, **more):
         """A node with its keys; `places` of glTF by frame, not at all frames where the item is not always there."""
         frames, there = list(self.frames()), sorted(places)
-        held = [places[max([f for f in there if f <= frame], default=there[0])] if frame not in places else places[frame] for frame in frames]
-        parts = [gltf.decomposed(m) for m in held] if len(distinct(dict(enumerate(held)))) > 1 else [gltf.decomposed(held[0])] * len(held)
+        held = [
+            places[max([f for f in there if f <= frame], default=there[0])] if frame not in places else places[frame]
+            for frame in frames
+        ]
+        parts = (
+            [gltf.decomposed(m) for m in held]
+            if len(distinct(dict(enumerate(held)))) > 1
+            else [gltf.decomposed(held[0])] * len(held)
+        )
         where = numpy.array([p[0] for p in parts])
         turned = numpy.array(gltf.steady([p[1].copy() for p in parts]))
         scale = numpy.array([p[2] for p in parts])
         visible = numpy.array([frame in places for frame in frames])
         node = {"name": item.name, **{k: v for k, v in more.items() if v is not None}}
-        for key, rows, rest in (("translation", where, (0, 0, 0)), ("rotation", turned, (0, 0, 0, 1)), ("scale", scale, (1, 1, 1))):
+        for key, rows, rest in (
+            ("translation", where, (0, 0, 0)),
+            ("rotation", turned, (0, 0, 0, 1)),
+            ("scale", scale, (1, 1, 1)),
+        ):
             if (abs(rows[0] - rest) > 1e-9).any():
                 node[key] = [float(v) for v in rows[0]]
         if extras or item.extras:
@@ -57,7 +68,11 @@ class Nodes:
             for word, k in (("TRANSLATION", 0), ("ROTATION", 1), ("SCALE", 2)):
                 attributes[word] = make(numpy.array([p[k] for p in parts], "f4"))
             self.document.use("EXT_mesh_gpu_instancing")
-            node = {"name": f"{name} (instances)", "mesh": mesh, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}}
+            node = {
+                "name": f"{name} (instances)",
+                "mesh": mesh,
+                "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}},
+            }
             self.document.json["scenes"][0]["nodes"].append(self.document.append("nodes", node))
             self.notes.keep("instances", len(found))
 

@@ -54,13 +54,23 @@ class Notes:
             order += [(damage, -sum(self.shares.get(n, 0) for n in part), few(part), text) for part in parts]
         order.sort(key=lambda line: line[:2])
         lines = [f"{names}: {text}{share(-minus)}" for _, minus, names, text in order]
-        kept = ", ".join(f"{n} {kind if n > 1 else kind.removesuffix('s')}" for kind, n in self.kept.items() if n) or "nothing"
+        kept = (
+            ", ".join(f"{n} {kind if n > 1 else kind.removesuffix('s')}" for kind, n in self.kept.items() if n)
+            or "nothing"
+        )
         baked = self.names(lambda damage: damage == Damage.BAKED)
         lost = self.names(lambda damage: damage < Damage.BAKED)
-        return [*lines, f"kept: {kept}", f"baked: {few(baked) or 'nothing'}", f"lost or changed: {few(lost) or 'nothing'}"]
+        return [
+            *lines,
+            f"kept: {kept}",
+            f"baked: {few(baked) or 'nothing'}",
+            f"lost or changed: {few(lost) or 'nothing'}",
+        ]
 
     def names(self, wanted):
-        chosen = sorted((damage, -self.shares.get(name, 0), name) for (name, _), damage in self.lines.items() if wanted(damage))
+        chosen = sorted(
+            (damage, -self.shares.get(name, 0), name) for (name, _), damage in self.lines.items() if wanted(damage)
+        )
         return list(dict.fromkeys(name for _, _, name in chosen))
 
 

@@ -4,6 +4,7 @@ Blender gives this depsgraph only to render engines. So a render engine of our o
 All that the render's state decides is thereby right: levels of subdivision, modifiers shown in the render, hidden objects, excluded
 collections, instances of geometry nodes, particles and linked collections, constraints, drivers, simulations.
 """
+
 import hashlib
 
 import bpy
@@ -23,7 +24,11 @@ class Item:
 
     def __init__(self, name, kind, original, instanced):
         self.name, self.kind, self.original, self.instanced = name, kind, original, instanced
-        self.places, self.shapes, self.states = {}, {}, {}    # by frame: world matrix; key of the shape; of a lamp or camera
+        self.places, self.shapes, self.states = (
+            {},
+            {},
+            {},
+        )  # by frame: world matrix; key of the shape; of a lamp or camera
         self.flags, self.extras = set(), {}
         self.label = original.name                            # in what the user reads
 
@@ -100,7 +105,9 @@ class Record:
 
     def shape_key(self, depsgraph, thing, original, frame):
         """Key of what the object looks like at this frame; the shape is read when it is new."""
-        slots = tuple((slot.link, slot.material.original.name_full if slot.material else "") for slot in thing.material_slots)
+        slots = tuple(
+            (slot.link, slot.material.original.name_full if slot.material else "") for slot in thing.material_slots
+        )
         if thing.type == "MESH":
             mark = (fingerprint(thing.data), slots, thing.data.name)
             if mark in self.fingerprints:
@@ -226,15 +233,29 @@ def own_properties(thing):
     for key in thing.keys():
         value = thing[key]
         value = value.to_list() if hasattr(value, "to_list") else value
-        if isinstance(value, (bool, int, float, str)) or isinstance(value, list) and all(isinstance(v, (int, float, str)) for v in value):
+        if (
+            isinstance(value, (bool, int, float, str))
+            or isinstance(value, list)
+            and all(isinstance(v, (int, float, str)) for v in value)
+        ):
             found[key] = value
     return found
 
 
 def flags_of(original, layer):
     """What Cycles hides of an object from which rays, and what it is in a compositor's hands."""
-    flags = {name for name in ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter",
-                               "visible_shadow") if not getattr(original, name, True)}
+    flags = {
+        name
+        for name in (
+            "visible_camera",
+            "visible_diffuse",
+            "visible_glossy",
+            "visible_transmission",
+            "visible_volume_scatter",
+            "visible_shadow",
+        )
+        if not getattr(original, name, True)
+    }
     if getattr(original, "is_shadow_catcher", False):
         flags.add("is_shadow_catcher")
     for flag, ask in (("holdout", "holdout_get"), ("indirect_only", "indirect_only_get")):
@@ -251,18 +272,53 @@ def flags_of(original, layer):
     return flags
 
 
-TIMED = {"WAVE", "OCEAN", "BUILD", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "NODES", "CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE",
-         "PARTICLE_SYSTEM", "PARTICLE_INSTANCE", "COLLISION", "SURFACE"}   # modifiers that may follow the time without a key
+TIMED = {
+    "WAVE",
+    "OCEAN",
+    "BUILD",
+    "MESH_CACHE",
+    "MESH_SEQUENCE_CACHE",
+    "NODES",
+    "CLOTH",
+    "SOFT_BODY",
+    "FLUID",
+    "DYNAMIC_PAINT",
+    "EXPLODE",
+    "PARTICLE_SYSTEM",
+    "PARTICLE_INSTANCE",
+    "COLLISION",
+    "SURFACE",
+}  # modifiers that may follow the time without a key
 
 
 def stands_still(scene):
     """Can nothing change from frame to frame? Then one frame is enough."""
     if scene.rigidbody_world or len(bpy.data.actions) or any(m.camera for m in scene.timeline_markers):
         return False
-    owners = [block for name in ("objects", "meshes", "materials", "node_groups", "lights", "cameras", "worlds", "curves", "shape_keys",
-                                 "scenes", "armatures", "lattices", "metaballs") for block in getattr(bpy.data, name, ())]
+    owners = [
+        block
+        for name in (
+            "objects",
+            "meshes",
+            "materials",
+            "node_groups",
+            "lights",
+            "cameras",
+            "worlds",
+            "curves",
+            "shape_keys",
+            "scenes",
+            "armatures",
+            "lattices",
+            "metaballs",
+        )
+        for block in getattr(bpy.data, name, ())
+    ]
     owners += [block.node_tree for block in owners if getattr(block, "node_tree", None)]
-    if any(o.animation_data and (o.animation_data.drivers or o.animation_data.action or o.animation_data.nla_tracks) for o in owners):
+    if any(
+        o.animation_data and (o.animation_data.drivers or o.animation_data.action or o.animation_data.nla_tracks)
+        for o in owners
+    ):
         return False
     if any(image.source in ("SEQUENCE", "MOVIE") for image in bpy.data.images):
         return False
@@ -301,7 +357,10 @@ def record(shot):
 
     bpy.utils.register_class(TempoluxRecorder)
     render = scene.render
-    kept = {name: getattr(render, name) for name in ("engine", "use_compositing", "use_sequencer", "use_multiview", "filepath")}
+    kept = {
+        name: getattr(render, name)
+        for name in ("engine", "use_compositing", "use_sequencer", "use_multiview", "filepath")
+    }
     frame, eye, used = scene.frame_current, None, shot.layer.use
     TempoluxRecorder.job, TempoluxRecorder.trouble = walk, None
     try:

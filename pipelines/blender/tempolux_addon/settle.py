@@ -3,6 +3,7 @@
 Blender's last bits and the order of its triangles differ from export to export, and each would be another scene, whose light is computed
 anew.
 """
+
 import json
 import struct
 
@@ -44,7 +45,10 @@ def near(a, b):
 def corners(document, binary, primitive):
     """All attributes at each corner of each triangle: (triangles, 3, numbers). None where a column cannot be read."""
     import numpy
-    columns = [column(document, binary, i) for _, i in sorted(primitive["attributes"].items(), key=lambda item: (item[0] != "POSITION", item[0]))]
+    columns = [
+        column(document, binary, i)
+        for _, i in sorted(primitive["attributes"].items(), key=lambda item: (item[0] != "POSITION", item[0]))
+    ]
     order = column(document, binary, primitive["indices"]) if "indices" in primitive else None
     if order is None or any(c is None or c.dtype.kind != "f" for c in columns) or len(order) % 3:
         return None
@@ -65,7 +69,9 @@ def in_one_order(a, b):
         ranks[order, k] = numpy.concatenate([[0], numpy.cumsum(steps)])
     def ordered(rows, ranks):
         ranks = ranks.reshape(rows.shape)
-        first = numpy.lexsort(numpy.moveaxis(ranks, 2, 0)[::-1], axis=-1)[:, :1]     # each triangle from its least corner on
+        first = numpy.lexsort(numpy.moveaxis(ranks, 2, 0)[::-1], axis=-1)[
+            :, :1
+        ]  # each triangle from its least corner on
         index = numpy.arange(len(rows))[:, None], (numpy.arange(3) + first) % 3
         return rows[index][numpy.lexsort(ranks[index].reshape(len(rows), -1).T[::-1])]
     return ordered(a, ranks[:a.shape[0] * 3]), ordered(b, ranks[a.shape[0] * 3:])
@@ -76,15 +82,20 @@ def same_triangles(new, old, a, b):
     if before is None or after is None or before.shape != after.shape:
         return False
     before, after = in_one_order(before, after)
-    return near(after[..., :3].reshape(-1, 3), before[..., :3].reshape(-1, 3)) and near(after[..., 3:].reshape(len(after), -1),
-                                                                                         before[..., 3:].reshape(len(before), -1))
+    return near(after[..., :3].reshape(-1, 3), before[..., :3].reshape(-1, 3)) and near(
+        after[..., 3:].reshape(len(after), -1), before[..., 3:].reshape(len(before), -1)
+    )
 
 
 def settle_primitive(new, old, a, b):
     """Puts the old numbers of a primitive in place of the new ones if they are the same triangles."""
-    uses = [(a["attributes"][k], b["attributes"].get(k)) for k in a["attributes"]] + [(a.get("indices"), b.get("indices"))]
+    uses = [(a["attributes"][k], b["attributes"].get(k)) for k in a["attributes"]] + [
+        (a.get("indices"), b.get("indices"))
+    ]
     pairs = [(column(*new, i), column(*old, j)) for i, j in uses if i is not None and j is not None]
-    if len(pairs) != len(uses) or any(x is None or y is None or x.shape != y.shape or x.dtype != y.dtype for x, y in pairs):
+    if len(pairs) != len(uses) or any(
+        x is None or y is None or x.shape != y.shape or x.dtype != y.dtype for x, y in pairs
+    ):
         return
     if not all(near(x, y) for x, y in pairs) and not same_triangles(new, old, a, b):
         return
@@ -128,5 +139,9 @@ def settle(path, before):
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     with open(path, "wb") as out:
-        out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON") + text)
+        out.write(
+            struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary))
+            + struct.pack("<I4s", len(text), b"JSON")
+            + text
+        )
         out.write(struct.pack("<I4s", len(binary), b"BIN\0") + binary)

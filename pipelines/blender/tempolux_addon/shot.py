@@ -33,7 +33,9 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
             self.notes.lost(Damage.MOTION, "the scene", "frames below 0 are left out")
         self.surfaces, self.wanted, self.camera_name = {}, {}, None
         self.camera = scene.camera
-        self.layer = next((layer for layer in scene.view_layers if layer == bpy.context.view_layer or layer.use), scene.view_layers[0])
+        self.layer = next(
+            (layer for layer in scene.view_layers if layer == bpy.context.view_layer or layer.use), scene.view_layers[0]
+        )
         self.still = stands_still(scene)
 
     def frames(self):
@@ -79,7 +81,10 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
         """Pixels of a texture: one for a pixel of the picture where the mesh is nearest; None where baking is off."""
         if not self.bake_limit:
             return None
-        return min(self.bake_limit, max(SMALLEST, 2 ** math.ceil(math.log2(max(1, self.wanted.get(topology, self.bake_limit))))))
+        return min(
+            self.bake_limit,
+            max(SMALLEST, 2 ** math.ceil(math.log2(max(1, self.wanted.get(topology, self.bake_limit))))),
+        )
 
     # ---- the export ----
 
@@ -113,28 +118,44 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
 
     def check(self):
         if not is_known():
-            self.notes.lost(Damage.LIGHT, "the scene", f"colours of the working space {working_space()} are taken as Rec.709")
+            self.notes.lost(
+                Damage.LIGHT, "the scene", f"colours of the working space {working_space()} are taken as Rec.709"
+            )
         if sum(layer.use for layer in self.scene.view_layers) > 1:
             self.notes.lost(Damage.DETAIL, "the scene", f"of its view layers only {self.layer.name} is exported")
         render = self.scene.render
         if render.use_border and not render.use_crop_to_border:
-            self.notes.lost(Damage.CAMERA, "the render border", "the whole picture is rendered; Crop to Render Region is kept")
+            self.notes.lost(
+                Damage.CAMERA, "the render border", "the whole picture is rendered; Crop to Render Region is kept"
+            )
         if render.pixel_aspect_x != render.pixel_aspect_y:
             size = "x".join(map(str, picture_size(render)))
             self.notes.lost(Damage.CAMERA, "the pixel aspect", f"pixels are square: the same picture as {size}")
         if render.use_motion_blur:
             self.notes.lost(Damage.CAMERA, "motion blur", "is not rendered (shutter kept in the camera's extras)")
         for image in bpy.data.images:
-            path = bpy.path.abspath(image.filepath, library=image.library) if image.source == "FILE" and image.filepath else ""
+            path = (
+                bpy.path.abspath(image.filepath, library=image.library)
+                if image.source == "FILE" and image.filepath
+                else ""
+            )
             if path and image.users and not image.packed_file and not os.path.isfile(path):
                 self.notes.lost(Damage.MATERIAL, f"image {image.name}", f"its file is missing: {path}")
         view = self.scene.view_settings
         if view.view_transform not in ("Standard", "Raw"):
-            self.notes.lost(Damage.HINT, "the view transform", f"{view.view_transform} is not applied: previews are sRGB; compare the linear "
-                                                                 "EXR files through one transform")
+            self.notes.lost(
+                Damage.HINT,
+                "the view transform",
+                f"{view.view_transform} is not applied: previews are sRGB; compare the linear "
+                "EXR files through one transform",
+            )
         if abs(view.exposure) > 1e-6:
-            self.notes.lost(Damage.HINT, "the exposure", f"{view.exposure:+g} stops are not in the frames; a preview as Blender shows it: "
-                                                           f"tempolux-info FRAME.exr --png FRAME.png --exposure {view.exposure:g}")
+            self.notes.lost(
+                Damage.HINT,
+                "the exposure",
+                f"{view.exposure:+g} stops are not in the frames; a preview as Blender shows it: "
+                f"tempolux-info FRAME.exr --png FRAME.png --exposure {view.exposure:g}",
+            )
 
     def measure_bakes(self):
         """Pixels that a texture of each mesh needs, by its size and distance from the camera over the shot."""
@@ -173,7 +194,12 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
         local = (corners - place[:3, 3]) @ turn
         low, high = local.min(axis=0), local.max(axis=0)
         nearest = numpy.clip(0, low, high)
-        return 2 * state.half * max(float(numpy.linalg.norm(nearest)), .05 * float(numpy.linalg.norm(high - low))) / height
+        return (
+            2
+            * state.half
+            * max(float(numpy.linalg.norm(nearest)), 0.05 * float(numpy.linalg.norm(high - low)))
+            / height
+        )
 
     # ---- what is not geometry, lamp or camera ----
 
@@ -192,7 +218,15 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
                 if settings.type == "HAIR" and settings.render_type == "PATH":
                     self.notes.lost(Damage.OBJECT, item.original.name, "its hair is left out: make it a mesh")
                 elif settings.render_type in ("HALO", "LINE", "PATH"):
-                    self.notes.lost(Damage.OBJECT, item.original.name, f"its particles as {settings.render_type.lower()} are left out")
+                    self.notes.lost(
+                        Damage.OBJECT,
+                        item.original.name,
+                        f"its particles as {settings.render_type.lower()} are left out",
+                    )
         for thing in self.scene.objects:
-            if thing.type in ("GPENCIL", "GREASEPENCIL") and not thing.hide_render and thing.name not in self.others.get(thing.type.lower(), ()):
+            if (
+                thing.type in ("GPENCIL", "GREASEPENCIL")
+                and not thing.hide_render
+                and thing.name not in self.others.get(thing.type.lower(), ())
+            ):
                 self.notes.lost(Damage.OBJECT, thing.name, "grease pencil is left out: make it a mesh")

@@ -12,7 +12,11 @@ class Smoke:
     """The part of Shot that finds the files of smoke."""
 
     def add_smoke(self, name, original):
-        pattern = pattern_of(bpy.path.abspath(original.data.filepath, library=original.library)) if original.data.filepath else None
+        pattern = (
+            pattern_of(bpy.path.abspath(original.data.filepath, library=original.library))
+            if original.data.filepath
+            else None
+        )
         self.take_smoke(name, pattern)
         place = numpy.array(original.matrix_world)
         if pattern and abs(place - numpy.eye(4)).max() > 1e-6:
@@ -20,11 +24,19 @@ class Smoke:
 
     def take_smoke(self, name, pattern):
         if pattern is None:
-            self.notes.lost(Damage.OBJECT, name, "smoke is left out: there is no .vdb file; bake the simulation, or name files by VOLUME=")
+            self.notes.lost(
+                Damage.OBJECT,
+                name,
+                "smoke is left out: there is no .vdb file; bake the simulation, or name files by VOLUME=",
+            )
         elif self.smoke is None:
             self.smoke = pattern
-            self.notes.lost(Damage.LIGHT, name, "smoke is in the make line as VOLUME, where its files place it; its density and colour: --sigma-t and "
-                                                "--albedo in VOLUME_OPTIONS")
+            self.notes.lost(
+                Damage.LIGHT,
+                name,
+                "smoke is in the make line as VOLUME, where its files place it; its density and colour: --sigma-t and "
+                "--albedo in VOLUME_OPTIONS",
+            )
         else:
             self.notes.lost(Damage.OBJECT, name, "smoke is left out: VOLUME names one series of files")
 

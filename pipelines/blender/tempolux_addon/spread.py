@@ -3,19 +3,28 @@
 Cycles gives direction t, from the lamp's axis, an intensity of sin(h - t), h half of the spread. A spot of glTF gives the square of a line in
 cos t, from 1 at its axis to 0 at its cone. A few cones with weights of 0 or more come near.
 """
+
 import itertools
 import math
 
 import numpy
 
-CONES, EDGES, GRID = 4, (0, .4, .7), 4   # cones and inner cones, as a share of them, that are tried; spots along each side
+CONES, EDGES, GRID = (
+    4,
+    (0, 0.4, 0.7),
+    4,
+)  # cones and inner cones, as a share of them, that are tried; spots along each side
 
 
 def cones_for(half):
     """[(outer angle, inner angle, intensity on the axis)] of spots of 1 W together."""
     angles = numpy.linspace(0, half, 200)
     wanted, solid = numpy.sin(half - angles) / math.sin(half), numpy.sqrt(numpy.sin(angles))
-    tried = [(outer, edge * outer) for outer in (min(math.pi / 2, half * (k + 1) / CONES) for k in range(CONES)) for edge in EDGES]
+    tried = [
+        (outer, edge * outer)
+        for outer in (min(math.pi / 2, half * (k + 1) / CONES) for k in range(CONES))
+        for edge in EDGES
+    ]
     curves = [numpy.clip((numpy.cos(angles) - math.cos(o)) / (math.cos(i) - math.cos(o)), 0, 1) ** 2 for o, i in tried]
     best = None
     for size in (1, 2, 3):

@@ -1,4 +1,5 @@
 """Values of shader nodes: constants, or expressions of sockets that can be baked. Follows links through groups, reroutes, muted nodes."""
+
 import math
 
 

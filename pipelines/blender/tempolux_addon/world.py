@@ -36,8 +36,12 @@ def bake_world(shot):
         return
     motion = [world.animation_data, world.node_tree.animation_data if world.node_tree else None]
     if any(m and (m.action or m.drivers) for m in motion):
-        shot.notes.lost(Damage.LIGHT, f"world {world.name}", f"its changes are left out: it is that of frame {shot.first}")
-    if world.node_tree and any(n.type == "OUTPUT_WORLD" and n.inputs["Volume"].is_linked for n in world.node_tree.nodes):
+        shot.notes.lost(
+            Damage.LIGHT, f"world {world.name}", f"its changes are left out: it is that of frame {shot.first}"
+        )
+    if world.node_tree and any(
+        n.type == "OUTPUT_WORLD" and n.inputs["Volume"].is_linked for n in world.node_tree.nodes
+    ):
         shot.notes.lost(Damage.LIGHT, f"world {world.name}", "its fog is left out")
     colour = plain_colour(world)
     if colour is not None:

@@ -8,13 +8,14 @@
 Answers each by a line: {"cpu_s": ...} of the job. The importer is Blender's own; all its NLA tracks are unmuted, lamps get no size, the world is
 the one given. defaults: Blender's clamping, bounces and filter; else none is clamped and bounces are as many as ours.
 """
+
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import serve  # before others: it takes standard output
 import bpy
-import mathutils
+from smoke_of_cycles import place_smoke
 
 
 def load(job):
@@ -22,7 +23,13 @@ def load(job):
     bpy.ops.import_scene.gltf(filepath=job["scene"], import_scene_extras=False,
                               export_import_convert_lighting_mode="SPEC" if job["light_units"] == "spec" else "RAW")
     scene = bpy.context.scene
-    for data in (*bpy.data.objects, *bpy.data.lights, *bpy.data.materials, *bpy.data.cameras, *(m.shape_keys for m in bpy.data.meshes if m.shape_keys)):
+    for data in (
+        *bpy.data.objects,
+        *bpy.data.lights,
+        *bpy.data.materials,
+        *bpy.data.cameras,
+        *(m.shape_keys for m in bpy.data.meshes if m.shape_keys),
+    ):
         if data.animation_data:
             for track in data.animation_data.nla_tracks:
                 track.mute = False
@@ -32,7 +39,9 @@ def load(job):
         elif light.type == "SUN":
             light.angle = 0
     scene.render.fps = 24
-    scene.camera = next((o for o in scene.objects if o.type == "CAMERA" and job.get("camera") in (None, "auto", o.name)), None)
+    scene.camera = next(
+        (o for o in scene.objects if o.type == "CAMERA" and job.get("camera") in (None, "auto", o.name)), None
+    )
     world = scene.world = bpy.data.worlds.new("World")
     world.use_nodes = True
     nodes, link = world.node_tree.nodes, world.node_tree.links.new
@@ -57,28 +66,6 @@ def load(job):
     render.use_file_extension = False
     scene.view_settings.view_transform = "Raw"
     scene.cycles.device = "CPU"
-
-
-def place_smoke(file, sigma_t, albedo):
-    """Grid `density`, placed as the glTF is; extinction of density 1 in 1/m; scattered evenly."""
-    bpy.ops.object.volume_import(filepath=file)
-    volume = bpy.context.object
-    volume.matrix_world = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))   # Blender's Z is up, glTF's Y
-    material = bpy.data.materials.new("Smoke")
-    material.use_nodes = True
-    nodes, link = material.node_tree.nodes, material.node_tree.links.new
-    nodes.clear()
-    density, scaled, both = (nodes.new(f"ShaderNode{kind}") for kind in ("Attribute", "Math", "AddShader"))
-    density.attribute_name, scaled.operation = "density", "MULTIPLY"
-    link(density.outputs["Fac"], scaled.inputs[0])
-    scaled.inputs[1].default_value = sigma_t
-    for i, kind in enumerate(("VolumeScatter", "VolumeAbsorption")):                    # colour x density, and (1 - colour) x density
-        part = nodes.new(f"ShaderNode{kind}")
-        part.inputs["Color"].default_value = [*albedo, 1]
-        link(scaled.outputs[0], part.inputs["Density"])
-        link(part.outputs[0], both.inputs[i])
-    link(both.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Volume"])
-    volume.data.materials.append(material)
 
 
 def render(job):

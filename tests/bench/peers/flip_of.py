@@ -1,4 +1,5 @@
 """FLIP (Andersson et al. 2020, its authors' package) of pictures, in the Python of build/peers/oidn: flip_of.py EXPOSURE REFERENCE.pfm TEST.pfm ..."""
+
 import sys
 
 import numpy

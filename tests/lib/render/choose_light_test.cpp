@@ -68,7 +68,8 @@ TEST(WaysToLight, LackWhatLoneSamplesBring) {
 }
 
 /// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance gives equal noise if e
-/// is multiplied by 2^-(9/14), rounded to quarters of powers of two: 2^-(3/4). Records leave no indirect light to the samples, so their frames keep the wish's error.
+/// is multiplied by 2^-(9/14), rounded to quarters of powers of two: 2^-(3/4). Records leave no indirect light to the
+/// samples, so their frames keep the wish's error.
 TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   RoughFrame rough = example();
   rough.wanted_of = 1;

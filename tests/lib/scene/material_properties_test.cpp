@@ -23,10 +23,8 @@ void flip(bool& x) { x = !x; }
 void flip(Rgb& x) { x.g = x.g == 0.25f ? 0.5f : 0.25f; }
 void flip(Texture& x) { x.transform[2] += 0.5f; }
 template <class E>
-  requires std::is_enum_v<E>
-void flip(E& x) {
-  x = E(int(x) == 0 ? 1 : 0);
-}
+requires std::is_enum_v<E>
+void flip(E& x) { x = E(int(x) == 0 ? 1 : 0); }
 
 /// Flips member number n of those given; false if there is none.
 template <class... Members>

@@ -143,7 +143,8 @@ TEST(Tracer, HitsAgreeWithALoopInDoublePrecision) {
     const Vec3 at = i % 3 == 0 ? a : i % 3 == 1 ? a + (b - a) * (0.5f + random(i, 0)) : (a + b + c) * (1.f / 3);
     const Vec3 normal = normalize(cross(b - a, c - a));
     Vec3 from = normalize(random_vector(i, 1)) * 2;
-    if (i % 3 == 2) from = at + (a - b) * (1 + 4 * std::abs(random(i, 8))) + normal * (1e-4f * random(i, 9));  // grazing
+    if (i % 3 == 2)
+      from = at + (a - b) * (1 + 4 * std::abs(random(i, 8))) + normal * (1e-4f * random(i, 9));  // grazing
     rays.push_back({from, at - from});
   }
   std::vector<Hit> hits(rays.size());
