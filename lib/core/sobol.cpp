@@ -5,19 +5,20 @@
 namespace tempolux {
 namespace {
 
-std::uint32_t reverse_bits(std::uint32_t x) {
-  x = __builtin_bswap32(x);
-  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
-  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
-  return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+/// x with the bits of each byte reversed.
+template <class Bits>
+Bits reverse_in_bytes(Bits x) {
+  const Bits ones = ~Bits(0), fours = ones / 17, pairs = ones / 5, singles = ones / 3;
+  x = (x & fours) << 4 | (x >> 4 & fours);
+  x = (x & pairs) << 2 | (x >> 2 & pairs);
+  return (x & singles) << 1 | (x >> 1 & singles);
 }
+
+std::uint32_t reverse_bits(std::uint32_t x) { return __builtin_bswap32(reverse_in_bytes(x)); }
 
 /// Both halves of x, each with its bits reversed.
 std::uint64_t reverse_halves(std::uint64_t x) {
-  x = (x & 0x5555555555555555u) << 1 | (x >> 1 & 0x5555555555555555u);
-  x = (x & 0x3333333333333333u) << 2 | (x >> 2 & 0x3333333333333333u);
-  x = (x & 0x0f0f0f0f0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0f0f0f0f0fu);
-  x = __builtin_bswap64(x);
+  x = __builtin_bswap64(reverse_in_bytes(x));
   return x << 32 | x >> 32;
 }
 

@@ -15,8 +15,8 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kBatchesAtOnce =
-    256;  ///< batches that are traced in parallel before their light is added in order
+/// Number of batches that are traced in parallel before their light is added in order.
+constexpr std::size_t kBatchesAtOnce = 256;
 
 }  // namespace
 

@@ -35,12 +35,8 @@ const std::set<std::string> kKnown = [] {
   std::set<std::string> known{"KHR_lights_punctual",        "KHR_mesh_quantization",   "KHR_texture_transform",
                               "EXT_mesh_gpu_instancing",    "KHR_animation_pointer",   "EXT_texture_webp",
                               "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"};
-  constexpr std::string_view kPrefix = "/extensions/";
   for (const MaterialProperty& property : material_properties())
-    if (property.pointer.starts_with(kPrefix)) {
-      const std::string_view rest = property.pointer.substr(kPrefix.size());
-      known.emplace(rest.substr(0, rest.find('/')));
-    }
+    if (const std::string_view name = extension_of(property.pointer); !name.empty()) known.emplace(name);
   return known;
 }();
 

@@ -49,15 +49,10 @@ struct PropertyPlace {
   std::string parent;     ///< the pointer without its last name
   std::string key;        ///< the pointer's last name
 
-  explicit PropertyPlace(std::string_view pointer) {
-    constexpr std::string_view kPrefix = "/extensions/";
-    const auto slash = pointer.rfind('/');
-    parent = pointer.substr(0, slash);
-    key = pointer.substr(slash + 1);
-    if (!pointer.starts_with(kPrefix)) return;
-    const std::string_view rest = pointer.substr(kPrefix.size());
-    extension = rest.substr(0, rest.find('/'));
-  }
+  explicit PropertyPlace(std::string_view pointer)
+      : extension(extension_of(pointer)),
+        parent(pointer.substr(0, pointer.rfind('/'))),
+        key(pointer.substr(pointer.rfind('/') + 1)) {}
   /// As places are written in messages: ".extensions.NAME.key"; of the core specification the key alone.
   std::string dotted() const { return (extension.empty() ? "." : ".extensions." + extension + ".") + key; }
 };

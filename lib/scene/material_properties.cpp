@@ -64,6 +64,13 @@ Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& prop
 
 }  // namespace
 
+std::string_view extension_of(std::string_view pointer) {
+  constexpr std::string_view kPrefix = "/extensions/";
+  if (!pointer.starts_with(kPrefix)) return {};
+  const std::string_view rest = pointer.substr(kPrefix.size());
+  return rest.substr(0, rest.find('/'));
+}
+
 std::size_t MaterialProperty::components() const {
   return role == colour_and_alpha                                                       ? 4
          : std::holds_alternative<Rgb Material::*>(member) && role != emission_strength ? 3

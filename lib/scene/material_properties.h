@@ -11,6 +11,9 @@
 
 namespace tempolux {
 
+/// Name of the extension that a JSON pointer inside a material names; empty for the core specification.
+std::string_view extension_of(std::string_view pointer);
+
 /// What a property's number means for its member.
 enum class PropertyRole : std::uint8_t {
   value,              ///< the member is the number, brought into its limits

@@ -50,8 +50,7 @@ class Tracer {
   /// Builds both trees. The frame must outlive the Tracer. Throws ResourceError if memory is short.
   explicit Tracer(const SceneFrame& frame);
   /// Takes the static tree from `static_scene` if its surfaces are the same arrays as the frame's (as in all frames of
-  /// a SegmentScene) and none lets rays pass by alpha. Otherwise builds the tree and stores it there for the next
-  /// frame.
+  /// a SegmentScene). Otherwise builds the tree and stores it there for the next frame.
   Tracer(const SceneFrame& frame, StaticTree& static_scene);
   ~Tracer();
   Tracer(Tracer&&) noexcept;

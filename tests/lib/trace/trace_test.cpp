@@ -182,7 +182,7 @@ TEST(Tracer, WhatStandsIsTakenFromTheFrameBefore) {
   EXPECT_EQ(heights(Tracer(second, standing)), (Heights{0, 2}));
 }
 
-TEST(Tracer, WhatStandsIsNotTakenWhereRaysMayPass) {
+TEST(Tracer, AlphaIsThatOfTheFrameWhereTheTreeIsShared) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)));
   const SceneFrame solid = scene.frame();
@@ -192,7 +192,7 @@ TEST(Tracer, WhatStandsIsNotTakenWhereRaysMayPass) {
   StaticTree standing;
   EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
   EXPECT_TRUE(std::isnan(heights(Tracer(*hidden, standing))[0]));
-  hidden.reset();  // a filter left in the tree would ask it
+  hidden.reset();  // the shared tree must not ask this frame any more
   EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
 }
 
