@@ -76,9 +76,8 @@ void compose(tools::Tool& tool, tools::SceneInput& input, Options options, int n
   tools::Output output(options.output);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  const PlacedCamera camera = frame.camera(input.scene().camera_node(tool.common().camera));
   Image image = load_exr(options.base);
-  const CameraView view(camera, frame.origin, image.width, image.height);
+  const CameraView view(frame, input.scene().camera_node(tool.common().camera), image.width, image.height);
   tools::SmokeBase base = tools::check_base(tool, options.base, std::move(image), frame, view);
 
   Smoke smoke{std::vector<SmokePixel>(base.image.pixel_count()), "", {}};

@@ -250,7 +250,7 @@ Rgb MediaLight::scattered(Vec3 point) const {
 
 Vec3 eye_for_phase(const CameraView& view, const Box3& bounds) {
   if (!view.orthographic()) return view.eye();
-  const Ray middle = view.ray(0.5f * float(view.width()), 0.5f * float(view.height()));
+  const Ray middle = view.pinhole({0.5f * float(view.width()), 0.5f * float(view.height())});
   return middle.origin - middle.direction * (1e4f * std::max(1.0f, bounds.diagonal()));
 }
 
@@ -268,13 +268,12 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
   parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
     Marcher marcher{scene, *media, light, options, step};
     for (std::size_t p = first; p < last; ++p) {
-      const auto x = float(p % std::size_t(view.width())), y = float(p / std::size_t(view.width()));
+      const auto x = int(p % std::size_t(view.width())), y = int(p / std::size_t(view.width()));
       SmokePixel sum{Rgb(0.0f), 0};
       marcher.scattered.clear();
       for (int s = 0; s < options.samples; ++s) {
         const PixelRandom random(options.seed, p, std::uint32_t(s));
-        const Vec2 within = options.surfaces_by_depth ? Vec2{0.5f, 0.5f} : random.get2(0, Purpose::pixel);
-        const Ray ray = view.ray(x + within.x, y + within.y);
+        const Ray ray = options.surfaces_by_depth ? view.middle(x, y) : view.ray(sample_of_pixel(x, y, random));
         float end = INFINITY;
         if (options.surfaces_by_depth) {
           // Converts distance along the ray to Z, which runs along the view axis.

@@ -38,7 +38,7 @@ bool has_distant_light(const SceneFrame& frame) {
 }
 
 CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wish& wish) {
-  return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
+  return CameraView(frame, source.camera_node, wish.width, wish.height);
 }
 
 /// At most kMostViews of `frames`, evenly spaced.

@@ -151,7 +151,7 @@ void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const 
   };
   parallel_each(unit.size(), 64, [&](std::size_t i) {
     const auto [x, y] = pixel_of(i);
-    const Ray ray = view_.ray(float(x) + 0.5f, float(y) + 0.5f);
+    const Ray ray = view_.middle(x, y);
     Hit hit;
     if (!tracer.intersect(ray, hit)) return;
     const SurfacePoint place = tracer.surface_point(hit);
@@ -189,13 +189,13 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
     const std::uint64_t seed = mix64(effort.seed ^ (kEyeKey + i / count));
     const std::size_t run = i % count;
     const PixelRandom random(seed, run, 0);
-    const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, run).get2(0, Purpose::pixel);
+    const Vec2 within = PathRandom(seed ^ 1, run).get2(0, Purpose::pixel);
     const std::size_t pixel =
         std::min(pixels - 1, std::size_t((double(run) + double(within.x)) * double(pixels) / double(count)));
     found[i].pixel = pixel;
     if (!mask_.empty() && !mask_[pixel]) return;
     const auto width = std::size_t(view_.width());
-    const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
+    const Ray ray = view_.ray(sample_of_pixel(int(pixel % width), int(pixel / width), random));
     RayCounts rays;
     const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
     found[i].layer = audited(light);

@@ -28,7 +28,7 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
   GatherCounts counts;
   for (const int number : cameras.frames) {
     const SceneFrame frame = cameras.at(number);
-    const CameraView view(frame.camera(cameras.camera_node), frame.origin, cameras.width, cameras.height);
+    const CameraView view(frame, cameras.camera_node, cameras.width, cameras.height);
     const auto look_at = [&](const Look& look) {
       std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
       if (seen && place.takes && !place.takes(*seen)) seen.reset();

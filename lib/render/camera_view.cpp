@@ -14,9 +14,9 @@ CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int 
   centre_y_ = 2 * half_height_ * camera.camera.lens_shift[1];
 }
 
-Ray CameraView::ray(float x, float y) const {
-  const double px = centre_x_ + (2.0 * double(x) / width_ - 1) * half_width_;
-  const double py = centre_y_ + (1 - 2.0 * double(y) / height_) * half_height_;
+Ray CameraView::pinhole(Vec2 raster) const {
+  const double px = centre_x_ + (2.0 * double(raster.x) / width_ - 1) * half_width_;
+  const double py = centre_y_ + (1 - 2.0 * double(raster.y) / height_) * half_height_;
   const Affine& from = camera_.scene_from_camera;
   if (orthographic()) return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
   return {Vec3(from.translation), Vec3(normalize(from.direction({px, py, -1}))), 0, INFINITY};
@@ -58,7 +58,7 @@ std::array<double, 16> CameraView::world_to_ndc() const {
 
 CameraRays::CameraRays(const Tracer& tracer, const CameraView& view, std::span<const Vec2> raster)
     : hits(raster.size()) {
-  for (const Vec2 at : raster) rays.push_back(view.ray(at.x, at.y));
+  for (const Vec2 at : raster) rays.push_back(view.pinhole(at));
   tracer.intersect(rays, hits);
 }
 

@@ -6,11 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "lib/core/random.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/at_frame.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
+
+/// One sample of the camera's measurement: where a ray passes the picture, the lens and the time the shutter is open. A
+/// search for CameraSample finds who integrates over all three.
+struct CameraSample {
+  Vec2 raster;            ///< raster coordinates
+  Vec2 lens{0.5f, 0.5f};  ///< place on the lens as two numbers in [0, 1); (.5, .5) is its centre
+  float shutter = 0;       ///< share of the time the shutter is open, in [0, 1)
+};
 
 /// A camera with a picture size in pixels, at least 1 x 1. Pixel (0, 0) is the top left one. Raster coordinates grow
 /// right and down; the centre of pixel (x, y) is at (x + .5, y + .5). The vertical field of view is the camera's; the
@@ -19,14 +28,22 @@ class CameraView {
  public:
   /// `origin`: world-space position of the scene space's origin [m] (SceneFrame::origin).
   CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height);
+  /// The camera of a node (Scene::camera_node) at the frame's time. Throws as SceneFrame::camera.
+  CameraView(const SceneFrame& frame, int camera_node, int width, int height)
+      : CameraView(frame.camera(camera_node), frame.origin, width, height) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
   const PlacedCamera& camera() const { return camera_; }
 
-  /// The ray through raster position (x, y) in scene space, with a unit direction. Perspective rays start at the eye,
-  /// orthographic rays on the plane through the eye.
-  Ray ray(float x, float y) const;
+  /// The ray of a sample in scene space, with a unit direction. Perspective rays start at the eye, orthographic rays on
+  /// the plane through the eye. The camera is a pinhole with an instant shutter: lens and shutter have no effect.
+  Ray ray(const CameraSample& sample) const { return pinhole(sample.raster); }
+  /// The ray through the lens' centre and a raster position, for what has one ray by definition: data channels,
+  /// reprojection, splats.
+  Ray pinhole(Vec2 raster) const;
+  /// The pinhole ray of a pixel's centre.
+  Ray middle(int x, int y) const { return pinhole({float(x) + 0.5f, float(y) + 0.5f}); }
   /// Raster position of a scene-space point, which may lie outside the picture. Empty if a perspective camera does not
   /// have the point in front; an orthographic camera projects every point.
   std::optional<std::array<double, 2>> project(Vec3 point) const;
@@ -61,12 +78,20 @@ class CameraView {
   double centre_x_, centre_y_;  ///< of the picture, from the view axis: to the right, up
 };
 
+/// A sample of pixel (x, y). Its place in the pixel is the number of Purpose::pixel of `random` (PathRandom or
+/// PixelRandom).
+template <class Random>
+CameraSample sample_of_pixel(int x, int y, const Random& random) {
+  const Vec2 within = random.get2(0, Purpose::pixel);
+  return {.raster = {float(x) + within.x, float(y) + within.y}};
+}
+
 /// Rays of a camera and what they meet first.
 struct CameraRays {
   std::vector<Ray> rays;
   std::vector<Hit> hits;  ///< by ray; surface kNone: nothing
 
-  /// The rays through these raster positions, in their order.
+  /// The pinhole rays through these raster positions, in their order.
   CameraRays(const Tracer& tracer, const CameraView& view, std::span<const Vec2> raster);
 };
 

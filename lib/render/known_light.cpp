@@ -35,7 +35,7 @@ float KnownLight::remaining_share(const SurfacePoint& hit, Vec3 geometric, float
 }
 
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {
-  Ray ray = view.ray(look.x, look.y);
+  Ray ray = view.pinhole({look.x, look.y});
   Hit hit;
   tracer.intersect(ray, hit);
   float distance = 0;

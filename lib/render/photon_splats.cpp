@@ -27,7 +27,7 @@ std::optional<Layer> layer_of(formats::PathKind kind) {
 bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const {
   if (view_.orthographic()) {
     const std::optional<std::array<double, 2>> raster = view_.project(place);
-    ray = view_.ray(float((*raster)[0]), float((*raster)[1]));
+    ray = view_.pinhole({float((*raster)[0]), float((*raster)[1])});
     ray.origin = place - ray.direction * float(view_.depth(place));
     distance = float(view_.depth(place));
   } else {

@@ -154,8 +154,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
   for (int i = 0; i < pass.count.own; ++i) {
     const PixelRandom random = of_pixel.of_sample(std::uint32_t(pass.first.own + i));
     const PathEffort effort = dealt(i);
-    const Vec2 jitter = random.get2(0, Purpose::pixel);
-    const Ray ray = view.ray(float(pass.x) + jitter.x, float(pass.y) + jitter.y);
+    const Ray ray = view.ray(sample_of_pixel(pass.x, pass.y, random));
     Hit hit;
     scene.tracer.intersect(ray, hit);
     caustics.use_half(pass.half(i));

@@ -20,7 +20,7 @@ constexpr float kNearEnough = 1 - 1e-3f;  ///< a hit before this share of the di
 bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
   if (!at || !((*at)[0] >= 0 && (*at)[0] < view.width() && (*at)[1] >= 0 && (*at)[1] < view.height())) return false;
-  Ray ray = view.ray(float((*at)[0]), float((*at)[1]));
+  Ray ray = view.pinhole({float((*at)[0]), float((*at)[1])});
   ray.t_max = kNearEnough * dot(place - ray.origin, ray.direction);
   return !tracer.occluded(ray);
 }

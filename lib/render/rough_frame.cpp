@@ -60,13 +60,13 @@ Sample sample_of(const Layers& layers) {
 
 /// A measured place of the picture.
 struct Where {
-  float x = 0, y = 0;    ///< pixel
+  int x = 0, y = 0;      ///< pixel
   std::size_t part = 0;  ///< pilot_part
 };
 
 Where where(int i, const CameraView& view, std::uint64_t seed) {
   const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
-  return {std::floor(at.x * float(view.width())), std::floor(at.y * float(view.height())),
+  return {int(at.x * float(view.width())), int(at.y * float(view.height())),
           pilot_part(double(at.x), double(at.y))};
 }
 
@@ -79,8 +79,7 @@ Samples samples_of(const RenderScene& scene, const CameraView& view, const Known
     const Where at = where(int(i), view, seed);
     for (std::uint32_t s = 0; s < kSamples; ++s) {
       const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
-      const Vec2 in_pixel = random.get2(0, Purpose::pixel);
-      const Ray ray = view.ray(at.x + in_pixel.x, at.y + in_pixel.y);
+      const Ray ray = view.ray(sample_of_pixel(at.x, at.y, random));
       samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, rays, view.cone()));
     }
   });

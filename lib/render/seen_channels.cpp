@@ -76,7 +76,7 @@ void add_seen_channels(const RenderScene& scene, const CameraView& view, const s
   for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.add(kNames[i]).values.data();
   std::uint32_t* const ids = image.add_ids("seen.id").ids.data();
   parallel_pixels(view.width(), view.height(), [&](int x, int y, std::size_t p) {
-    const Shown shown = follow(scene.tracer, view, view.ray(float(x) + 0.5f, float(y) + 0.5f));
+    const Shown shown = follow(scene.tracer, view, view.middle(x, y));
     const std::array<float, kNames.size()> values{shown.depth,    shown.normal.x, shown.normal.y, shown.normal.z,
                                                   shown.albedo.r, shown.albedo.g, shown.albedo.b};
     for (std::size_t i = 0; i < values.size(); ++i) to[i][p] = values[i];

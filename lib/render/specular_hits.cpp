@@ -42,7 +42,7 @@ SpecularHits::SpecularHits(const RenderScene& scene, const CameraView& view, std
   std::vector<std::uint8_t> middles(width * std::size_t(view.height()));
   parallel_each(middles.size(), 4096, [&](std::size_t p) {
     Hit hit;
-    middles[p] = scene.tracer.intersect(view.ray(float(p % width) + 0.5f, float(p / width) + 0.5f), hit) &&
+    middles[p] = scene.tracer.intersect(view.middle(int(p % width), int(p / width)), hit) &&
                  lobes_of(scene.frame().materials[scene.tracer.surface_point(hit).material]).specular;
   });
   const auto pixels =
@@ -57,10 +57,9 @@ SpecularHits::SpecularHits(const RenderScene& scene, const CameraView& view, std
   const float widen = float(std::sqrt(std::max(1.0, pixels_of_path)));
   hits_ = parallel_found<HitPlace>(count, 64, [&](std::size_t i, std::vector<HitPlace>& found) {
     const PixelRandom random(seed, i, 0);
-    const Vec2 jitter = random.get2(0, Purpose::pixel);
     const double at = double(i) + double(PathRandom(seed ^ 1, i).get1(0, Purpose::pixel));
     const std::size_t pixel = pixels[std::min(pixels.size() - 1, std::size_t(at * pixels_of_path))];
-    follow(scene, view.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y), random, view.cone(),
+    follow(scene, view.ray(sample_of_pixel(int(pixel % width), int(pixel / width), random)), random, view.cone(),
            Rgb(float(pixels_of_path)), widen, found);
   });
   sort_into_cells();

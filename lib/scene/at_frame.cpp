@@ -76,13 +76,13 @@ SegmentScene::SegmentScene(const Scene& scene, Segment segment, const TimeOption
   media_hash_ = media_hash();
 }
 
-SceneFrame SegmentScene::at(int frame) const {
-  if (frame < segment_.first || frame > segment_.last)
+SceneFrame SegmentScene::at(double frame) const {
+  if (!(frame >= segment_.first && frame <= segment_.last))
     throw std::invalid_argument("frame " + std::to_string(frame) + " is not in the segment");
   const std::vector<Affine> world = animator_->world_from_node(frame / options_.fps);
   SceneFrame at;
   at.scene = scene_;
-  at.frame = frame;
+  at.frame = int(std::floor(frame));
   at.time_s = frame / options_.fps;
   at.segment = segment_;
   at.surfaces = static_surfaces_;
@@ -113,7 +113,9 @@ PlacedCamera SceneFrame::camera(int camera_node) const {
   const std::size_t n = std::size_t(camera_node);
   if (camera_node < 0 || n >= scene->nodes.size() || scene->nodes[n].camera < 0)
     throw std::invalid_argument("node " + std::to_string(camera_node) + " has no camera");
-  return place_camera(*scene, cameras[std::size_t(scene->nodes[n].camera)], n, origin, world_from_node[n]);
+  Camera camera = cameras[std::size_t(scene->nodes[n].camera)];
+  scene->nodes[n].camera_extras.apply(frame, camera);
+  return place_camera(*scene, camera, n, origin, world_from_node[n]);
 }
 
 }  // namespace tempolux

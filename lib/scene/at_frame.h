@@ -139,7 +139,7 @@ struct SceneHashes {
 /// The scene evaluated at a frame. Owns its surfaces and points into the Scene, which must outlive it.
 struct SceneFrame {
   const Scene* scene = nullptr;
-  int frame = 0;
+  int frame = 0;  ///< the last whole frame up to time_s
   double time_s = 0;
   Segment segment;
   std::vector<Surface> surfaces;  ///< static surfaces first, then moving ones
@@ -179,9 +179,9 @@ class SegmentScene {
   SegmentScene(const Scene& scene, Segment segment, const TimeOptions& options);
 
   const Segment& segment() const { return segment_; }
-  /// The scene at `frame`, which must be in the segment (else std::invalid_argument). Throws InputError if a transform
-  /// moves geometry or a light out of the range of coordinates.
-  SceneFrame at(int frame) const;
+  /// The scene at `frame`, which may lie between two frames (12.25) and must be in the segment (else
+  /// std::invalid_argument). Throws InputError if a transform moves geometry or a light out of the range of coordinates.
+  SceneFrame at(double frame) const;
 
  private:
   const Scene* scene_;

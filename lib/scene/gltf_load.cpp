@@ -6,9 +6,11 @@
 #include <new>
 
 #include "formats/error.h"
+#include "lib/scene/camera_extras.h"
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_place.h"
+#include "lib/scene/place_surfaces.h"
 
 namespace tempolux {
 namespace gltf {
@@ -93,6 +95,9 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
     scene.images = std::make_shared<const TextureImages>(std::move(import.images), options.textures);
   import_lights(import);
   import_cameras(import);
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    if (Node& node = scene.nodes[n]; node.camera >= 0 && !node.extras.empty())
+      node.camera_extras = read_camera_extras(node.extras, node_place(scene, n), scene.warnings);
   import_meshes(import);
   import_deformation(import);
   import_animations(import, options.animation);

@@ -135,12 +135,30 @@ struct Skin {
 /// A camera looks along its node's -Z, with +Y up.
 struct Camera {
   enum class Kind { perspective, orthographic };
+  enum class Shutter { centre, start, end };  ///< where the frame's time lies in the time the shutter is open
   std::string name;
   Kind kind = Kind::perspective;
   double yfov_rad = 0.8;  ///< full vertical angle, perspective
   double ymag_m = 1;      ///< half height of the view, orthographic
   /// Where the picture's centre lies off the view axis, in heights of the picture: x to the right, y up.
   std::array<double, 2> lens_shift{};
+  // From the node's extras; no stage renders them.
+  double lens_radius_m = 0;   ///< 0: a pinhole
+  double focus_m = 0;         ///< distance of what is sharp, along the view axis; 0: not known
+  double shutter_frames = 0;  ///< time the shutter is open, in frames; 0: an instant
+  Shutter shutter = Shutter::centre;
+};
+
+/// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them). Each list
+/// holds one number for all frames, or one per frame from frame `first_frame` on; empty: the file does not say.
+struct CameraExtras {
+  int first_frame = 0;
+  std::vector<double> lens_mm, f_stop, focus_m, shutter_frames;
+  Camera::Shutter shutter = Camera::Shutter::centre;
+
+  /// Sets lens and shutter of a camera to their values at a frame; frames outside of a list have its first or last one.
+  /// The radius of a perspective camera's lens is lens / (2 f_stop); an orthographic camera has no lens.
+  void apply(int frame, Camera& camera) const;
 };
 
 /// Largest inner cone of a spot, as a share of the outer cone. Blender writes inner = outer for a spot without a soft
@@ -181,6 +199,7 @@ struct Node {
   std::vector<Affine> instances;
   std::uint32_t object = kNone;  ///< id.object of its mesh: 0, 1, 2 ... in node order
   std::string extras;            ///< the node's custom properties as JSON text; empty: none
+  CameraExtras camera_extras;    ///< of a node with a camera
 };
 
 /// One animated property: values at increasing times.

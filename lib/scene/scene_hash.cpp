@@ -176,7 +176,7 @@ formats::Identity identity_of(const SceneFrame& frame) {
 
 std::string camera_hash(const PlacedCamera& placed) {
   Hasher hasher;
-  hasher.add(std::string_view("camera 1"));
+  hasher.add(std::string_view("camera 2"));
   hasher.add(std::uint32_t(placed.camera.kind));
   hasher.add(placed.camera.kind == Camera::Kind::perspective ? placed.camera.yfov_rad : placed.camera.ymag_m);
   hasher.add(placed.scene_from_camera);
@@ -184,6 +184,9 @@ std::string camera_hash(const PlacedCamera& placed) {
     hasher.add(right);
     hasher.add(up);
   }
+  const Camera& camera = placed.camera;
+  for (const double value : {camera.lens_radius_m, camera.focus_m, camera.shutter_frames}) hasher.add(value);
+  hasher.add(std::uint32_t(camera.shutter));
   return hasher.hex();
 }
 

@@ -23,8 +23,7 @@ SceneView::SceneView(const Tracer& tracer, const CameraView& view)
     for (std::size_t i = first; i < last; i += kTogether) {
       const std::size_t count = std::min(kTogether, last - i);
       for (std::size_t j = 0; j < count; ++j)
-        rays[j] = view_.ray(float((i + j) % std::size_t(view.width())) + 0.5f,
-                            float((i + j) / std::size_t(view.width())) + 0.5f);
+        rays[j] = view_.middle(int((i + j) % std::size_t(view.width())), int((i + j) / std::size_t(view.width())));
       tracer_.intersect(std::span(rays).first(count), std::span(hits_).subspan(i, count));
       for (std::size_t j = 0; j < count; ++j) {
         const FacePoint point = point_of(hits_[i + j], rays[j]);
@@ -51,7 +50,7 @@ void SceneView::look(std::span<const RasterPoint> at, FacePoint* points) const {
   std::array<Hit, kTogether> hits;
   for (std::size_t i = 0; i < at.size(); i += kTogether) {
     const std::size_t count = std::min(kTogether, at.size() - i);
-    for (std::size_t j = 0; j < count; ++j) rays[j] = view_.ray(float(at[i + j].x), float(at[i + j].y));
+    for (std::size_t j = 0; j < count; ++j) rays[j] = view_.pinhole({float(at[i + j].x), float(at[i + j].y)});
     hits.fill({});
     tracer_.intersect(std::span(rays).first(count), std::span(hits).first(count));
     for (std::size_t j = 0; j < count; ++j) points[i + j] = point_of(hits[j], rays[j]);

@@ -112,7 +112,7 @@ void GatherRun::continue_chain(const SceneFrame& frame, const FramePoints& point
 std::optional<Vec3> eye_from(const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
   if (!at) return std::nullopt;
-  return view.ray(float((*at)[0]), float((*at)[1])).origin;
+  return view.pinhole({float((*at)[0]), float((*at)[1])}).origin;
 }
 
 /// Gathers one frame from the previous one, and keeps it for the next.
@@ -131,8 +131,7 @@ void GatherRun::gather(int number) {
   GatherOptions rays = options_.gather;
   rays.seed = tool_.common().seed_for_frame(number);
   const PointsRead read(tool_, tracer, lights, points, rays);
-  const CameraView view(frame.camera(input_.scene().camera_node(tool_.common().camera)), frame.origin, options_.width,
-                        options_.height);
+  const CameraView view(frame, input_.scene().camera_node(tool_.common().camera), options_.width, options_.height);
   const TemporalScene scene{tracer,
                             lights,
                             read.lookup,

@@ -182,7 +182,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   const int camera = input.scene().camera_node(tool.common().camera);
-  const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
+  const CameraView view(frame, camera, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
   FrameOptions frame_options = options_of(tool, options, number);
   BaseFrame base;

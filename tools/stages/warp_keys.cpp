@@ -83,7 +83,7 @@ FramesOfScene::Kept& FramesOfScene::kept(int number, bool asked) {
   std::shared_ptr<Kept>& kept = frames_[number];
   if (!kept) {
     SceneFrame frame = input_.at(number, asked);
-    const CameraView view(frame.camera(node_), frame.origin, width_, height_);
+    const CameraView view(frame, node_, width_, height_);
     const FrameCamera camera(view.world_to_camera(), view.world_to_ndc(), width_, height_);
     kept = std::make_shared<Kept>(Kept{std::move(frame), view, camera});
   }

@@ -216,7 +216,7 @@ class Cameras:
         places = {frame: unscaled(gltf.TO_GLTF @ place) for frame, place in item.places.items()}
         for frame in self.frames():               # a camera that is hidden sees all the same
             places.setdefault(frame, places[max([f for f in places if f <= frame], default=min(places))])
-        self.node(item, places, extras=self.camera_extras([states[f] for f in frames]), camera=index)
+        self.node(item, places, extras=self.camera_extras([states[f] for f in frames], frames[0]), camera=index)
         self.zoom([states.get(f, first) for f in self.frames()], index)
         self.notes.keep("cameras")
 
@@ -227,12 +227,14 @@ class Cameras:
             self.document.channel(self.times(self.frames()), rows, pointer=f"/cameras/{index}/{word}")
 
     @staticmethod
-    def camera_extras(states):
-        """Each value once, or as a list by frame where it changes."""
+    def camera_extras(states, first):
+        """Each value once, or as a list by frame where it changes; the lists begin at frame `first_frame`."""
         extras = {}
         for name in states[0].extras:
             values = [s.extras.get(name, states[0].extras[name]) for s in states]
             extras[name] = values[0] if all(v == values[0] for v in values) else values
+            if isinstance(extras[name], list):
+                extras["first_frame"] = first
         return extras
 
     def add_cut(self):
@@ -260,7 +262,7 @@ class Cameras:
         cuts = copy.copy(items[self.first])
         cuts.name, cuts.extras = "Cuts", {}
         places = {f: unscaled(gltf.TO_GLTF @ items[f].places[f]) for f in self.frames()}
-        self.node(cuts, places, extras=self.camera_extras(states), camera=index)
+        self.node(cuts, places, extras=self.camera_extras(states, self.first), camera=index)
         self.zoom(states, index)
         self.camera_name = "Cuts"
         self.notes.baked("the cuts", f"{len(used)} cameras of the markers are one camera, Cuts")

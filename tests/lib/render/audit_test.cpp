@@ -67,7 +67,7 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
   const Vec3 normal = normalize(Vec3{0, -1, 1}), lamp{0, 1, 0};
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
-      const Vec3 ray = view.ray(float(x) + 0.5f, float(y) + 0.5f).direction;
+      const Vec3 ray = view.middle(x, y).direction;
       const float t = -2 / (ray.z - ray.y);
       const Vec3 at = ray * t;
       if (!(t > 0) || std::abs(at.x) > 60 || at.y > 1.9f || at.y < -30) continue;

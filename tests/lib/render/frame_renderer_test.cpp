@@ -307,7 +307,7 @@ TEST(CameraView, LensShiftMovesThePicture) {
     const auto raster = view.project(view.orthographic() ? level : seen);
     EXPECT_NEAR((*raster)[0], 32, 1e-5);
     EXPECT_NEAR((*raster)[1], 18, 1e-5);
-    const Ray ray = view.ray(10, 30);
+    const Ray ray = view.pinhole({10, 30});
     const auto back = view.project(ray.origin + ray.direction * 5);
     EXPECT_NEAR((*back)[0], 10, 1e-4);
     EXPECT_NEAR((*back)[1], 30, 1e-4);

@@ -165,7 +165,7 @@ TEST(MissingRecords, LeaveThePathAsItIs) {
   known.records = &none;
   RayCounts path_counts, counts;
   for (std::uint64_t pixel = 0; pixel < 64 * 36; ++pixel) {
-    const Ray ray = c.view.ray(float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f);
+    const Ray ray = c.view.middle(int(pixel % 64), int(pixel / 64));
     const Layers path = trace_eye_path(c.render_scene(), ray, PixelRandom(1, pixel, 0), nullptr, path_counts);
     const Layers here = trace_eye_path(c.render_scene(), ray, PixelRandom(1, pixel, 0), &known, counts);
     for (std::size_t l = 0; l < kLayerCount; ++l)

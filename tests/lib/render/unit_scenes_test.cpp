@@ -42,7 +42,7 @@ struct UnitScene {
 
   Ray centre_ray() const {
     const CameraView view(frame.camera(scene.camera_node("auto")), frame.origin, 16, 9);
-    return view.ray(8, 4.5f);
+    return view.pinhole({8, 4.5f});
   }
 };
 

@@ -49,8 +49,9 @@ bool flip_member(PunctualLight& l, int n) {
   return flip_one(n, kind, intensity, inner, outer);
 }
 bool flip_member(Camera& c, int n) {
-  auto& [name, kind, yfov, ymag, shift] = c;
-  return flip_one(n, kind, c.kind == Camera::Kind::perspective ? yfov : ymag, shift);
+  auto& [name, kind, yfov, ymag, lens_shift, lens_radius, focus, open, shutter] = c;
+  return flip_one(n, kind, c.kind == Camera::Kind::perspective ? yfov : ymag, lens_shift, lens_radius, focus, open,
+                  shutter);
 }
 bool flip_member(MediumOptions& o, int n) {
   auto& [sigma_t, albedo, g] = o;

@@ -157,6 +157,47 @@ TEST(SceneAtFrame, LensShiftComesFromTheCamerasExtras) {
   EXPECT_EQ(first_frame(maker.load()).camera(node).camera.lens_shift, (std::array{0.0, 0.0}));
 }
 
+TEST(SceneAtFrame, LensAndShutterComeFromTheNodesExtras) {
+  GltfMaker maker;
+  const int node = maker.add_camera({{"extras",
+                                      {{"lens_mm", 50},
+                                       {"f_stop", {2.5, 5, 10}},
+                                       {"first_frame", 3},
+                                       {"focus_m", 4},
+                                       {"shutter_frames", 0.5},
+                                       {"shutter_position", "start"}}}});
+  const Scene scene = maker.load();
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto camera_at = [&](int frame) {
+    Camera camera = scene.cameras[0];
+    scene.nodes[std::size_t(node)].camera_extras.apply(frame, camera);
+    return camera;
+  };
+  // 50 mm at f/2.5 is an opening 20 mm wide. Before and behind the list its ends hold.
+  EXPECT_DOUBLE_EQ(camera_at(0).lens_radius_m, 0.01);
+  EXPECT_DOUBLE_EQ(camera_at(3).lens_radius_m, 0.01);
+  EXPECT_DOUBLE_EQ(camera_at(4).lens_radius_m, 0.005);
+  EXPECT_DOUBLE_EQ(camera_at(9).lens_radius_m, 0.0025);
+  EXPECT_EQ(camera_at(4).focus_m, 4);
+  EXPECT_EQ(camera_at(4).shutter_frames, 0.5);
+  EXPECT_EQ(camera_at(4).shutter, Camera::Shutter::start);
+
+  maker.json["nodes"][0]["extras"] = {{"f_stop", -1}, {"lens_mm", "long"}, {"shutter_position", 2}, {"focus_m", {}}};
+  EXPECT_EQ(maker.load().warnings.size(), 3u);  // {} is null: the file does not say
+}
+
+TEST(SceneAtFrame, BetweenTwoFramesIsBetweenTheirStates) {
+  GltfMaker maker;
+  const int node = maker.add_camera({{"name", "Camera"}});
+  maker.animate(node, "translation", {0, 1}, {0, 0, 0, 24, 0, 0});
+  const Scene scene = maker.load();
+  const SegmentScene segment(scene, segment_of(scene, 0, {}), {});
+  EXPECT_EQ(segment.at(12).camera(node).scene_from_camera.translation.x, 12);
+  EXPECT_EQ(segment.at(12.25).camera(node).scene_from_camera.translation.x, 12.25);
+  EXPECT_EQ(segment.at(12.25).frame, 12);
+  EXPECT_THROW(segment.at(-0.25), std::invalid_argument);
+}
+
 TEST(SceneAtFrame, OrthographicCamerasKeepTheirHeight) {
   GltfMaker maker;
   maker.add_node({{"mesh", maker.add_triangle()}});
