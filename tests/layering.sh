@@ -26,17 +26,21 @@ may transport 'core volume scene trace material light'
 may photon   'core volume scene trace material light'
 may density  'core'
 may irradcache 'core density'
-may gather   'core volume scene trace material light transport density irradcache'
-may temporal 'core scene trace light irradcache gather'
-may render   'core volume image scene trace material light transport photon density irradcache gather'
-may compose  'core volume image scene trace light transport gather render'
+may points   'core volume scene trace material light transport density irradcache'
+may light_texture 'core scene trace irradcache'
+may gather   'core volume scene trace material light transport density irradcache points'
+may temporal 'core scene trace light irradcache points gather'
+may render   'core volume image scene trace material light transport photon density irradcache points light_texture gather'
+may audit    'core volume scene trace material light transport photon density points render'
+may pilot    'core image scene trace material light transport photon density irradcache points light_texture gather render audit'
+may compose  'core volume image scene trace light transport points gather render'
 may warp     'core image volume scene trace material render'
 may aqm      'core image'
 may filter   'core image'
-may plan     'core scene trace material light render'
+may plan     'core scene trace material light render pilot'
 may report   'core image aqm'
 for folder in lib/*/; do
-  case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/transport/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/temporal/ lib/render/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
+  case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/transport/ lib/photon/ lib/density/ lib/irradcache/ lib/points/ lib/light_texture/ lib/gather/ lib/temporal/ lib/render/ lib/audit/ lib/pilot/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
 # each third-party header in one file of the tree (tests and benchmarks apart)
@@ -56,6 +60,6 @@ for tool in tools/*.cpp; do
   [ "$(wc -l < "$tool")" -le 150 ] || { echo "$tool: more than 150 lines; move work to tools/stages"; bad=1; }
 done
 # lengths come from footprints, from what is seen near by and from the photons' spacing, never from the size of the scene
-if grep -rnE 'diagonal\(|frame\(?\)?\.bounds' lib/density lib/gather lib/irradcache lib/photon lib/render --include='*.cpp' --include='*.h' |
+if grep -rnE 'diagonal\(|frame\(?\)?\.bounds' lib/density lib/points lib/light_texture lib/gather lib/irradcache lib/photon lib/render lib/audit lib/pilot --include='*.cpp' --include='*.h' |
   grep -v 'reachable_area.cpp.*const Box3& bounds'; then echo '^ a length of the scene'; bad=1; fi   # there: rounding of coordinates
 exit $bad

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lib/gather/mesh_elements.h"
+#include "lib/light_texture/mesh_elements.h"
 #include "lib/volume/majorants.h"
 
 namespace tempolux {

@@ -5,6 +5,7 @@
 // to the point where the scenes differ.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "lib/core/vec.h"
@@ -67,5 +68,14 @@ class PathRandom {
  private:
   std::uint64_t key_;
 };
+
+/// Key of the random numbers of a place: a hash of seed, position and normal, so that what is made there does not depend
+/// on what is made at other places.
+inline std::uint64_t place_key(Vec3 position, Vec3 normal, std::uint64_t seed) {
+  std::uint64_t key = mix64(seed + 0x6761746865720001ull);
+  for (const float x : {position.x, position.y, position.z, normal.x, normal.y, normal.z})
+    key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
+  return key;
+}
 
 }  // namespace tempolux

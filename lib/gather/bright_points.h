@@ -11,7 +11,7 @@
 
 #include "lib/core/random.h"
 #include "lib/gather/incoming_radiance.h"
-#include "lib/gather/lamp_light.h"
+#include "lib/points/lamp_light.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/light/light_tree.h"

@@ -51,7 +51,7 @@ void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record
 float FinalGather::distance(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
   const GatherStrata& strata = distance_strata_;
   const GatherDirections directions(from, normal, strata.rings, strata.sectors,
-                                    gather_key(from.position, normal, ~options_.seed));
+                                    place_key(from.position, normal, ~options_.seed));
   const float closest = closest_distance(from);
   thread_local GatherRays shot;
   thread_local std::vector<Hit> hits;
@@ -96,7 +96,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   std::size_t halvings = 0;
   for (; halvings < kFewer && ray_share <= 0.5f; ++halvings) ray_share *= 2;
   const GatherStrata& strata = strata_[kFewer - halvings];
-  const std::uint64_t key = gather_key(from.position, normal, options_.seed);
+  const std::uint64_t key = place_key(from.position, normal, options_.seed);
   const GatherDirections directions(from, normal, strata.rings, strata.sectors, key);
   shot.clear();
   for (const std::uint32_t c : strata.order) shot.aim(directions, c, 0);

@@ -7,7 +7,7 @@
 
 #include "lib/gather/gather_directions.h"
 #include "lib/gather/incoming_radiance.h"
-#include "lib/gather/reachable_area.h"
+#include "lib/points/reachable_area.h"
 #include "lib/irradcache/records.h"
 #include "lib/trace/solid_around.h"
 
@@ -65,7 +65,7 @@ class FinalGather {
   /// Measures the clearance of a gathered record up to its radius; limit_radius() must have set the radius.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Adds the light of bright points to a record of gather rays, from GatherOptions::bright_samples explicit samples.
-  /// `key`: gather_key() of the record's place and normal, the key of the random numbers.
+  /// `key`: place_key() of the record's place and normal, the key of the random numbers.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
 
   /// Rays that distance() sends at a time; the harmonic mean of fewer distances is too uncertain for a radius.

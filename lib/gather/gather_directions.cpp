@@ -31,12 +31,6 @@ GatherStrata::GatherStrata(int rays) {
   *this = GatherStrata(count, std::max(3, int(std::lround(double(rays) / count))));
 }
 
-std::uint64_t gather_key(Vec3 p, Vec3 n, std::uint64_t seed) {
-  std::uint64_t key = mix64(seed + 0x6761746865720001ull);
-  for (float x : {p.x, p.y, p.z, n.x, n.y, n.z}) key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
-  return key;
-}
-
 GatherDirections::GatherDirections(const SurfacePoint& from, Vec3 normal, int rings, int sectors, std::uint64_t key)
     : from_(from),
       frame_(normal),

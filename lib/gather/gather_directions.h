@@ -24,10 +24,6 @@ struct GatherStrata {
   std::size_t cells() const { return order.size(); }
 };
 
-/// Key of the random numbers of a place: a hash of seed, position and normal, so that a record does not depend on other
-/// records.
-std::uint64_t gather_key(Vec3 position, Vec3 normal, std::uint64_t seed);
-
 /// The gather rays of one place. A cell has any number of rays, which are numbered and fill the cell uniformly. A ray
 /// follows from key, cell and number, so it can be computed again at any time.
 class GatherDirections {

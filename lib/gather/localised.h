@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lib/gather/signed_density.h"
+#include "lib/points/signed_density.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 
@@ -19,10 +19,6 @@ struct InfluenceThresholds {
   /// Share of E_y: 0 up to low, 1 from high on, t^2 (3 - 2 t) with t = (I - low) / (high - low) in between.
   float gathered_share(float influence) const;
 };
-
-/// DensityOptions::area_probes for dynamic maps. Eight probes estimate the area of a disc with a standard error of 15
-/// %. A change is usually a hundredth of the light, so the error is .15 % of the light.
-inline constexpr int kChangeProbes = 8;
 
 /// The change of a static record by the dynamic photons of a frame.
 struct RecordChange {

@@ -10,12 +10,12 @@
 #include "formats/error.h"
 #include "formats/hash.h"
 #include "lib/plan/stages.h"
-#include "lib/render/choose_light.h"
-#include "lib/render/choose_preview.h"
-#include "lib/render/choose_split.h"
-#include "lib/render/hidden_light.h"
-#include "lib/render/places_seen.h"
-#include "lib/render/seen_spheres.h"
+#include "lib/pilot/choose_light.h"
+#include "lib/pilot/choose_preview.h"
+#include "lib/pilot/choose_split.h"
+#include "lib/pilot/hidden_light.h"
+#include "lib/pilot/places_seen.h"
+#include "lib/pilot/seen_spheres.h"
 
 namespace tempolux {
 namespace {

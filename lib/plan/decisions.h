@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "lib/render/choose_light.h"
-#include "lib/render/choose_moving.h"
+#include "lib/pilot/choose_light.h"
+#include "lib/pilot/choose_moving.h"
 
 namespace tempolux {
 

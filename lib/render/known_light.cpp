@@ -1,6 +1,6 @@
 #include "lib/render/known_light.h"
 
-#include "lib/gather/mesh_light.h"
+#include "lib/light_texture/mesh_light.h"
 #include "lib/material/inside.h"
 #include "lib/render/localised_light.h"
 #include "lib/render/shading.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lib/density/photon_reach.h"
-#include "lib/gather/point_density.h"
+#include "lib/points/point_density.h"
 
 namespace tempolux {
 namespace {

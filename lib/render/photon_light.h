@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "lib/density/irradiance_estimate.h"
-#include "lib/gather/footprint_density.h"
+#include "lib/points/footprint_density.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {

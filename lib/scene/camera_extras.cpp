@@ -1,14 +1,15 @@
 #include "lib/scene/camera_extras.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "lib/core/json.h"
 
 namespace tempolux {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kMost = 1e9;  ///< largest value that is read: millimetres, metres and frames beyond it are errors
+
+using Json = nlohmann::json;
 
 bool fits(const Json& value) { return value.is_number() && value.get<double>() >= 0 && value.get<double>() <= kMost; }
 

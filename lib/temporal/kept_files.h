@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lib/gather/gather_points.h"
+#include "lib/points/gather_points.h"
 #include "lib/scene/at_frame.h"
 #include "lib/temporal/kept_hemisphere.h"
 

@@ -11,7 +11,7 @@
 
 #include "formats/meshirrad/meshirrad.h"
 #include "lib/core/vec.h"
-#include "lib/gather/mesh_elements.h"
+#include "lib/light_texture/mesh_elements.h"
 
 namespace tempolux {
 

@@ -151,7 +151,7 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts
   const SurfacePoint& place = seen.surface;
   r.position = array_of(place.position);
   r.normal = array_of(seen.normal);
-  r.key = gather_key(place.position, seen.normal, gather_options_.seed);
+  r.key = place_key(place.position, seen.normal, gather_options_.seed);
   r.surface = place.surface;
   r.triangle = place.triangle;
   r.barycentric = {place.u, place.v};

@@ -39,11 +39,11 @@ IDEAS = (
          (("tools/stages/render_frame.cpp", "frame.spread_outliers = !options.keep_outliers &&", "frame.spread_outliers = false &&"),)),
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
-         (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
+         (("lib/pilot/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
     Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
-         (("lib/render/rough_frame.cpp", "if (scene.lights.has_distant()) rough.paths_of_light", "if (scene.lights.count() > 1000000000) rough.paths_of_light"),)),
+         (("lib/pilot/rough_frame.cpp", "if (scene.lights.has_distant()) rough.paths_of_light", "if (scene.lights.count() > 1000000000) rough.paths_of_light"),)),
     Idea("points by importance", "points lie where cameras look", "points",
-         (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
+         (("lib/points/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
          (("lib/irradcache/points.h", "static constexpr float kNear = 2;", "static constexpr float kNear = 0;"),)),
     Idea("shadow borders", "where points side by side have direct light that differs eightfold it is sampled instead", "points",
@@ -59,5 +59,5 @@ IDEAS = (
          (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
            "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),
     Idea("rays of records by a pilot", "scene-plan finds how many rays records need", "cache",
-         (("lib/render/choose_light.cpp", "way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));", "way.rays = 500;"),)),
+         (("lib/pilot/choose_light.cpp", "way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));", "way.rays = 500;"),)),
 )

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "lib/gather/place_records.h"
 #include "tests/support/photons.h"
 #include "tests/support/pixel_views.h"

@@ -7,7 +7,7 @@
 #include "lib/core/formatted.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/object_names.h"
-#include "lib/render/audit.h"
+#include "lib/audit/audit.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {

@@ -8,7 +8,7 @@
 
 #include "lib/gather/localised.h"
 #include "lib/gather/place_records.h"
-#include "lib/render/seen_spheres.h"
+#include "lib/pilot/seen_spheres.h"
 #include "tools/stages/gather_input.h"
 
 namespace tempolux::tools {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "lib/core/arrays.h"
-#include "lib/gather/gather_points.h"
+#include "lib/points/gather_points.h"
 #include "lib/temporal/light_jumps.h"
 #include "tools/common/cli.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/gather/mesh_elements.h"
+#include "lib/light_texture/mesh_elements.h"
 #include "tools/common/scene_input.h"
 
 namespace tempolux::tools {

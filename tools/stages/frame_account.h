@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/render/audit.h"
+#include "lib/audit/audit.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/tool_main.h"
 

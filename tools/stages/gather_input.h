@@ -11,7 +11,7 @@
 #include "formats/irradcache/irradcache.h"
 #include "formats/photons/photons.h"
 #include "lib/gather/bright_points.h"
-#include "lib/gather/gather_points.h"
+#include "lib/points/gather_points.h"
 #include "lib/gather/place_records.h"
 #include "lib/irradcache/records.h"
 #include "tools/common/scene_input.h"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "lib/gather/lamp_light.h"
+#include "lib/points/lamp_light.h"
 #include "lib/gather/localised_file.h"
-#include "lib/gather/whole_photons.h"
+#include "lib/points/whole_photons.h"
 #include "lib/scene/static_scene.h"
 
 namespace tempolux::tools {

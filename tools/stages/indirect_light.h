@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "lib/gather/mesh_light.h"
+#include "lib/light_texture/mesh_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/localised_light.h"
 #include "lib/render/path_tracer.h"

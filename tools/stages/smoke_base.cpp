@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "lib/compose/smoke_layer.h"
-#include "lib/gather/gather_points.h"
+#include "lib/points/gather_points.h"
 #include "lib/image/frame_identity.h"
 
 namespace tempolux::tools {

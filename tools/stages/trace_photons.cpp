@@ -12,7 +12,7 @@
 #include "lib/core/arrays.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
-#include "lib/render/seen_spheres.h"
+#include "lib/pilot/seen_spheres.h"
 #include "lib/scene/static_scene.h"
 #include "tools/common/cli.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lib/gather/final_gather.h"
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "tests/support/places.h"
 #include "tests/support/scenes.h"
 

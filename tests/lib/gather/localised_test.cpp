@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lib/core/sampling.h"
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lib/gather/final_gather.h"
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/trace/solid_around.h"
 #include "tests/support/materials.h"

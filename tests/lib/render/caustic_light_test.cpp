@@ -7,7 +7,7 @@
 
 #include "lib/core/halton.h"
 #include "lib/core/sampling.h"
-#include "lib/gather/point_density.h"
+#include "lib/points/point_density.h"
 #include "lib/render/photon_light.h"
 #include "tests/support/materials.h"
 #include "tests/support/photons.h"

@@ -7,8 +7,8 @@
 
 #include "lib/core/sobol.h"
 #include "lib/gather/bright_points.h"
-#include "lib/gather/irradiance_points.h"
-#include "lib/gather/lamp_light.h"
+#include "lib/points/irradiance_points.h"
+#include "lib/points/lamp_light.h"
 #include "lib/material/dielectric.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "lib/gather/lamp_light.h"
+#include "lib/points/lamp_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/chain.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "lib/light/lights.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"

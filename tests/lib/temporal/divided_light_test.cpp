@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "lib/gather/bright_points.h"
-#include "lib/gather/irradiance_points.h"
+#include "lib/points/irradiance_points.h"
 #include "lib/temporal/temporal_gather.h"
 #include "tests/support/lamp_ceiling.h"
 #include "tests/support/scenes.h"

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "lib/gather/mesh_elements.h"
+#include "lib/light_texture/mesh_elements.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {

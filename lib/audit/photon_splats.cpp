@@ -1,0 +1,83 @@
+#include "lib/audit/photon_splats.h"
+
+#include <cmath>
+
+#include "formats/octahedral.h"
+#include "lib/points/footprint_density.h"
+#include "lib/render/shading.h"
+#include "lib/volume/medium.h"
+
+namespace tempolux {
+namespace {
+
+/// The layer of light of this kind; empty for kinds of media.
+std::optional<Layer> layer_of(formats::PathKind kind) {
+  switch (kind) {
+    case formats::PathKind::direct: return Layer::direct;
+    case formats::PathKind::caustic: return Layer::caustic;
+    case formats::PathKind::indirect: return Layer::indirect;
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace
+
+/// True if a ray from the camera towards `place` first meets a surface about there, and comes from the side of
+/// `normal`. Sets the ray, its hit and the distance [m] of `place` from the camera.
+bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const {
+  if (view_.orthographic()) {
+    const std::optional<std::array<double, 2>> raster = view_.project(place);
+    ray = view_.pinhole({float((*raster)[0]), float((*raster)[1])});
+    ray.origin = place - ray.direction * float(view_.depth(place));
+    distance = float(view_.depth(place));
+  } else {
+    const Vec3 way = place - view_.eye();
+    distance = length(way);
+    ray = {view_.eye(), way * (1 / distance), 0, INFINITY};
+  }
+  if (!(distance > 0) || !(dot(normal, ray.direction) < 0)) return false;
+  if (!tracer_.intersect(ray, hit)) return false;
+  return std::abs(hit.t - distance) <= kAlong * distance;
+}
+
+std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d shift, std::optional<Vec3> wi) const {
+  const std::optional<Layer> layer = layer_of(photon.kind);
+  if (!layer) return std::nullopt;
+  const Vec3 place = shifted(photon.position, shift);
+  const std::optional<std::array<double, 2>> raster = view_.project(place);
+  if (!raster ||
+      !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height()))
+    return std::nullopt;
+  const Vec3 normal = vec_of(formats::decode_normal(photon.normal));
+  Hit hit;
+  Ray ray;
+  float distance = 0;
+  if (!sees(place, normal, hit, ray, distance)) return std::nullopt;
+  SurfacePoint point = tracer_.surface_point(hit);
+  const Vec3 wo = -ray.direction;
+  if (std::abs(dot(point.position - place, normal)) > kOff * distance) return std::nullopt;
+  if (dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0)
+    return std::nullopt;  // the other side of a thin wall
+
+  const SceneFrame& frame = tracer_.frame();
+  const Vec3 smooth = point.normal;
+  RayCone cone = view_.cone();
+  cone.advance(distance);
+  const SurfaceMaterial material(frame, point, cone.width);
+  if (material.values().unlit) return std::nullopt;
+  const ShadingPoint x(point, wo, material);
+  if (!x.bsdf.has_diffuse()) return std::nullopt;
+  Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * rgb_of(photon.flux);
+  if (wi && photon.kind == formats::PathKind::caustic)
+    radiance *= received_share(*wi, normal, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+  const double pixel = double(view_.pixel_size(1)), depth = view_.depth(place);
+  const double area = pixel * pixel * (view_.orthographic() ? 1 : depth * depth * depth / double(distance));
+  radiance *= float(double(std::abs(dot(x.normal_geometric, wo))) / area);
+  if (const Media* const media = frame.media.get()) [[unlikely]]
+    radiance *= float(std::exp(-media->optical_depth(ray.origin, ray.direction, distance)));
+  radiance *= camera_inside_.transmittance_over(frame.materials, distance);
+  const auto column = std::uint32_t((*raster)[0]), row = std::uint32_t((*raster)[1]);
+  return Splat{row * std::uint32_t(view_.width()) + column, *layer, radiance};
+}
+
+}  // namespace tempolux

@@ -1,0 +1,127 @@
+#include "lib/pilot/choose_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "lib/core/grid.h"
+#include "lib/gather/final_gather.h"
+#include "lib/points/irradiance_points.h"
+#include "lib/render/pixel_noise.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
+/// Limits of the number of gather rays of a record. Fewer distances do not determine the radius of a record;
+/// irradcache-build --rays does not accept more.
+constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
+constexpr double kLeastError = 1e-12;
+/// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
+/// (docs/pixels.md).
+constexpr double kFilterGain = 2.4;
+
+/// Squared error of missed light after n samples; at most the square of all the light.
+double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
+
+/// Work and error of one way. map: visible caustic light comes from photons.
+Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
+  const bool records = method == IndirectMethod::records;
+  const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
+  const double variance = records ? (map ? effort.other_without_caustic : effort.other)
+                          : map   ? effort.without_caustic
+                                  : effort.all;
+  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
+  const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
+  double fixed = 0;
+  if (map || method != IndirectMethod::paths)
+    fixed += double(order.photons) * Work::kRay * (1 + rough.photons_per_path);
+  if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
+  Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
+  if (rough.wanted_of > 0 && variance > rough.wanted_of)
+    way.pixel_error = nearest_on_grid(error_for_variance(variance / rough.wanted_of), 4);
+  way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
+  if (map) way.error += rough.map_error;
+  else way.error += left_of(rough.missed_caustic, samples);
+  way.lacks = map ? 0 : rough.hidden;
+  if (method == IndirectMethod::paths) {
+    way.error += left_of(rough.missed, samples);
+    way.unsure = rough.unsure;
+  }
+  const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
+  way.error += lost * lost;
+  if (records) {
+    const double ray = rough.records * rough.record_ray;
+    const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
+    way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));
+    way.work += ray * way.rays;
+    way.error += rough.record_error / way.rays;
+  }
+  return way;
+}
+
+/// The order of ways_to_light().
+void sort(std::vector<Way>& ways) {
+  std::ranges::stable_sort(ways, {},
+                           [](const Way& way) { return std::pair(way.lacks > 0 || way.unsure > 0, way.score()); });
+}
+
+}  // namespace
+
+std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics) {
+  std::vector<Way> ways;
+  for (const IndirectMethod method : {IndirectMethod::paths, IndirectMethod::gather, IndirectMethod::records})
+    for (const bool map : {false, true})
+      if ((!map || caustics) && (method == IndirectMethod::paths || rough.places > 0))
+        ways.push_back(way_of(rough, order, method, map));
+  sort(ways);
+  return ways;
+}
+
+std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
+  std::vector<Way> all;
+  for (const std::vector<Way>& ways : ways_of_frames)
+    for (const Way& way : ways) {
+      const auto same = std::ranges::find_if(
+          all, [&](const Way& other) { return other.method == way.method && other.map == way.map; });
+      if (same == all.end()) {
+        all.push_back(way);
+        continue;
+      }
+      same->work += way.work;
+      same->error += way.error;
+      same->rays = std::max(same->rays, way.rays);
+      same->pixel_error = std::min(same->pixel_error, way.pixel_error);
+      same->measured &= way.measured;
+      same->lacks = std::max(same->lacks, way.lacks);
+      same->unsure = std::max(same->unsure, way.unsure);
+    }
+  sort(all);
+  return all;
+}
+
+std::string because(const std::vector<Way>& ways) {
+  char text[96];
+  std::string words;
+  const double least = ways.front().score();
+  for (const Way& way : ways) {
+    std::snprintf(text, sizeof text, "%s%s %s%.3g", kIndirectMethods[std::size_t(way.method)],
+                  way.map ? " beside caustics of photons" : "", way.measured ? "" : "at least ",
+                  least > 0 ? way.score() / least : 1.0);
+    words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
+  }
+  const auto most = [&](double Way::*share) { return std::ranges::max(ways, {}, share).*share; };
+  if (const double lacks = most(&Way::lacks); lacks > 0) {
+    std::snprintf(text, sizeof text, "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * lacks);
+    words += text + std::string("what point, spot and sun lights send by mirrors and smooth glass");
+  }
+  if (const double unsure = most(&Way::unsure); unsure > 0) {
+    std::snprintf(text, sizeof text, "; paths meet %.2g %% of the light too seldom to know how much it is",
+                  100 * unsure);
+    words += text;
+  }
+  return words;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,432 @@
+#include "lib/pilot/rough_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "lib/core/parallel_each.h"
+#include "lib/core/sobol.h"
+#include "lib/core/statistics.h"
+#include "lib/gather/bright_points.h"
+#include "lib/gather/final_gather.h"
+#include "lib/points/irradiance_points.h"
+#include "lib/gather/place_records.h"
+#include "lib/image/srgb.h"
+#include "lib/irradcache/points.h"
+#include "lib/audit/audit.h"
+#include "lib/pilot/hidden_light.h"
+#include "lib/render/known_light.h"
+#include "lib/pilot/pilot_photons.h"
+#include "lib/render/pixel_noise.h"
+#include "lib/pilot/places_seen.h"
+#include "lib/pilot/see_photons.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kSamples = 4;             ///< samples of a place, as many as the first samples of a pixel (FrameOptions)
+constexpr double kFirst = kSamples;     ///< fewest samples of a pixel of a frame
+constexpr int kRecords = 64;            ///< places with two records each: the variance errs by sqrt(2 / 64) = 18 %
+constexpr std::uint32_t kPoints = 500;  ///< irradiance points per side (figures: docs/notebook/constants.md)
+constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough record
+/// Largest number of pixels at which the need for records is tested. The test then takes a tenth of a second. In a
+/// picture with more pixels the tested pixels form a lattice.
+constexpr double kLooks = 320 * 180;
+/// Squared error of a density by k photons, over the square of the density: 1 / k.
+constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;
+
+/// Radiance of one sample [W/m^2/sr], mean of the channels, by layer. `other`: all layers but caustic and indirect.
+struct Sample {
+  double other = 0, caustic = 0, indirect = 0;
+  double seen = 0;  ///< the part of `other` in the layers emission and specular
+  double sum() const { return other + caustic + indirect; }
+};
+using Samples = std::vector<std::array<Sample, kSamples>>;  ///< by place
+using PartOfLight = std::function<double(const Sample&)>;
+
+Sample sample_of(const Layers& layers) {
+  Sample sample;
+  for (std::size_t l = 0; l < kLayerCount; ++l) {
+    const double value = double(channel_mean(layers.value[l]));
+    (Layer(l) == Layer::caustic    ? sample.caustic
+     : Layer(l) == Layer::indirect ? sample.indirect
+                                   : sample.other) += value;
+    if (Layer(l) == Layer::emission || Layer(l) == Layer::specular) sample.seen += value;
+  }
+  return sample;
+}
+
+/// A measured place of the picture.
+struct Where {
+  int x = 0, y = 0;      ///< pixel
+  std::size_t part = 0;  ///< pilot_part
+};
+
+Where where(int i, const CameraView& view, std::uint64_t seed) {
+  const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
+  return {int(at.x * float(view.width())), int(at.y * float(view.height())),
+          pilot_part(double(at.x), double(at.y))};
+}
+
+/// Takes kSamples samples at each of options.places places. Adds their rays to `counts`.
+Samples samples_of(const RenderScene& scene, const CameraView& view, const KnownLight* known,
+                   const RoughOptions& options, RayCounts& counts) {
+  const std::uint64_t seed = options.seed;
+  Samples samples(std::size_t(options.places));
+  counts += parallel_sum<RayCounts>(samples.size(), 32, [&](std::size_t i, RayCounts& rays) {
+    const Where at = where(int(i), view, seed);
+    for (std::uint32_t s = 0; s < kSamples; ++s) {
+      const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
+      const Ray ray = view.ray(sample_of_pixel(at.x, at.y, random));
+      samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, rays, view.cone()));
+    }
+  });
+  return samples;
+}
+
+/// Work of one sample, in shadow rays.
+double work_of(const RayCounts& counts, const Samples& samples) {
+  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) /
+         (kSamples * double(samples.size()));
+}
+
+double mean_of(const Samples& samples, const PartOfLight& light) {
+  double sum = 0;
+  for (const auto& some : samples)
+    for (const Sample& sample : some) sum += light(sample);
+  return sum / (kSamples * double(samples.size()));
+}
+
+/// Mean radiances [W/m^2/sr] of the picture and the allowed errors that follow from them.
+struct Levels {
+  std::vector<std::size_t> part;  ///< part of each place
+  /// Mean of the picture. Radiance of the layers emission and specular counts at most as much as white, because a flame
+  /// in a lantern is a thousand times as bright as the walls that it lights. Direct light does so, too, because a bulb
+  /// close to a wall makes a very bright spot. The other light is at least what photons show, because paths may find
+  /// none of it.
+  double picture = 0;
+  double white = 0;             ///< radiance that the exposure of the median part shows as white
+  std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1
+
+  Levels(const Samples& samples, const SeenLight& photons, const CameraView& view, std::uint64_t seed)
+      : allowed(kPilotParts) {
+    std::vector<double> sum(kPilotParts, 0.0), count(kPilotParts, 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      part.push_back(where(int(i), view, seed).part);
+      for (const Sample& sample : samples[i]) sum[part.back()] += sample.sum(), ++count[part.back()];
+    }
+    const double mean = mean_of(samples, [](const Sample& s) { return s.sum(); });
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : mean;
+    std::vector<double> sorted = sum;
+    const double shown = photons.caustic.mean + photons.indirect.mean,
+                 found = mean_of(samples, [](const Sample&s) { return s.caustic + s.indirect; }),
+                 lit = 1 / exposure_of(sum),
+                 others = mean_of(samples, [lit](const Sample&s) { return std::min(s.other - s.seen, lit); });
+    const double least = std::max(shown, found) + others;
+    white = std::max(upper_median(sorted), 0.1 * (least > 0 ? least : mean)) / 0.18;
+    // Light behind mirrors and glass is in `shown` of photons and in `seen` of paths. It must count once.
+    const double seen = mean_of(samples, [&](const Sample& s) { return std::min(s.seen, white); });
+    picture = std::max(shown, found + seen) + others;
+    for (std::size_t p = 0; p < sum.size(); ++p) allowed[p] = allowed_error(sum[p], picture, 1);
+  }
+};
+
+/// For each part of the picture, the variance of one sample of this light over the square of the allowed error. The
+/// value of a sample is cut where it alone makes a pixel of `times` samples white.
+std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
+  std::vector<double> sum(kPilotParts, 0.0), count(kPilotParts, 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    double first = 0, square = 0;
+    for (const Sample& sample : samples[i]) {
+      const double value = std::min(light(sample), times * levels.white);
+      first += value, square += value * value;
+    }
+    const std::size_t part = levels.part[i];
+    if (levels.allowed[part] > 0)
+      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
+    ++count[part];
+  }
+  for (std::size_t part = 0; part < sum.size(); ++part) sum[part] /= std::max(1.0, count[part]);
+  return sum;
+}
+
+/// Variance of one sample of the whole picture. A frame takes samples in proportion to the root of each part's
+/// variance, so a mean of n samples per pixel leaves (mean root)^2 / n.
+double adaptive(const std::vector<double>& variances) {
+  double roots = 0;
+  for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
+  return roots * roots;
+}
+
+SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
+  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
+  const auto lost = [&](double Sample::*layer) {
+    double above = 0;
+    for (std::array<Sample, kSamples> some : samples) {
+      std::ranges::sort(some, std::greater(), layer);
+      above += std::max(0.0, some[0].*layer - std::max(some[1].*layer, times * levels.white));
+    }
+    return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
+  };
+  return {.work = work,
+          .all = of([](const Sample& s) { return s.sum(); }),
+          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
+          .other = of([](const Sample& s) { return s.other + s.caustic; }),
+          .other_without_caustic = of([](const Sample& s) { return s.other; }),
+          .lost_caustic = lost(&Sample::caustic),
+          .lost_indirect = lost(&Sample::indirect)};
+}
+
+/// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they
+/// leave in all light but layer indirect.
+void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
+  constexpr double kWholeSample = 4;  // shadow rays: cost of a sample of all parts
+  for (const double variance :
+       variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
+    const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
+    rough.samples += wanted / kPilotParts;
+    rough.wanted += variance / wanted / kPilotParts;
+  }
+  rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
+}
+
+/// Irradiance points and bright points, made of the pilot's photons, in place of the frame's files.
+class RoughLight {
+ public:
+  /// photons: of kPilotPaths light paths. paths: number of light paths of the frame's map. The radii of the points are
+  /// reduced to those of the frame's map, so that as many hits are close hits as in the frame.
+  RoughLight(const RenderScene& scene, formats::PhotonBlock photons, std::uint64_t paths, const RoughOptions& options)
+      : photons_(std::move(photons)) {
+    PointOptions placing;
+    placing.seed = options.seed;
+    placing.count = kPoints;
+    placing.seen.assign(options.seen.begin(), options.seen.end());
+    placed_ = place_points(scene.frame(), placing);
+    estimate_points(scene.tracer, scene.lights, photons_, {}, placing, placed_.points);
+    const double narrower = std::sqrt(double(kPilotPaths) / double(std::max(kPilotPaths, paths)));
+    for (IrradiancePoint& point : placed_.points) point.radius *= float(narrower);
+    lookup_.emplace(placed_.points, placed_.spacing, point_clearance(scene.tracer));
+    lookup_->take_as_even();
+    lamps_ = note_lamps_beside(scene.tracer, scene.lights, *lookup_);
+    const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
+    if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
+  }
+  /// The light that samples of pixels may read from the points. Bright points are left out, because usually only
+  /// records sample bright points explicitly.
+  KnownLight known() const {
+    KnownLight known;
+    known.points = &*lookup_;
+    return known;
+  }
+  GatherOptions gathering(std::uint64_t seed) const {
+    GatherOptions options;
+    options.seed = seed;
+    options.rays = kRays;
+    options.bright = bright_ ? &*bright_ : nullptr;
+    return options;
+  }
+  const PointLookup& lookup() const { return *lookup_; }
+
+ private:
+  formats::PhotonBlock photons_;
+  PlacedPoints placed_;
+  std::optional<PointLookup> lookup_;
+  std::vector<LampPhoton> lamps_;
+  std::optional<BrightPoints> bright_;
+};
+
+/// Inputs of all measurements of a rough frame.
+struct Picture {
+  const RenderScene& scene;
+  const CameraView& view;
+  const RoughOptions& options;
+  const Levels levels;
+};
+
+/// Two records at one place.
+struct Pair {
+  bool gathered = false;  ///< false: there is no Lambert lobe at the place
+  double error2 = 0;      ///< squared error of light that is interpolated there, over the square of the allowed error
+  GatherCounts counts;
+};
+
+/// Places records where the picture needs them. Only distances are measured, no light is gathered.
+RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
+  const PlacementOptions options;
+  RecordStore store;
+  const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& counts) {
+    IrradianceRecord record;
+    record.position = seen.surface.position;
+    record.normal = seen.normal;
+    record.object = seen.surface.object;
+    record.radius_unclamped = gather.distance(seen.surface, seen.normal, counts);
+    limit_radius(record, seen.footprint, options);
+    gather.look_around(seen.surface, record);
+    return record;
+  }};
+  const double pixels = double(picture.view.width()) * picture.view.height();
+  const int step = std::max(1, int(std::ceil(std::sqrt(pixels / kLooks))));
+  const auto view = [&](const Look& look) {
+    return seen_through(picture.scene.tracer, picture.view, {look.x * float(step), look.y * float(step), look.random});
+  };
+  const auto steps = [step](int size) { return std::max(1, size / step); };
+  GatherCounts counts;
+  place_records(gather, {view, steps(picture.view.width()), steps(picture.view.height()), {}, &source}, options, store,
+                counts);
+  return store;
+}
+
+/// Number of records whose plain mean has the same variance as the weighted mean of `records` valid ones: (sum w)^2 /
+/// sum w^2 = 2/3 of them. For a place anywhere in the disc of a record, the weight w = 1 - d / r has the mean 1/3 and
+/// w^2 has the mean 1/6.
+double independent(int records) { return std::max(1.0, 2.0 / 3 * records); }
+
+/// Gathers at a place with two gathers of different seeds. Half of the squared difference is the variance of one
+/// record.
+Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, const RecordStore& placed,
+                 int place) {
+  Pair pair;
+  const Where at = where(place, picture.view, picture.options.seed);
+  std::optional<SeenPoint> seen = seen_through(picture.scene.tracer, picture.view, {float(at.x) + 0.5f, float(at.y) + 0.5f, {}});
+  if (!seen) return pair;
+  const SurfaceMaterial material(picture.scene.frame(), seen->surface, seen->footprint);
+  const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
+  double difference = 0;
+  for (const FinalGather& gather : gathers) {
+    const IrradianceRecord record = gather.gather(seen->surface, seen->normal, pair.counts);
+    difference = std::min(double(channel_mean(reflected * record.irradiance)), picture.levels.white) - difference;
+  }
+  pair.gathered = true;
+  const double allowed = picture.levels.allowed[at.part],
+               records = independent(placed.interpolate(seen->surface.position, seen->normal).count);
+  if (allowed > 0) pair.error2 = difference * difference / 2 / records / (allowed * allowed);
+  return pair;
+}
+
+/// Sets the values of `rough` that concern records.
+void measure_records(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
+  const auto gather = [&](std::uint64_t seed) {
+    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(), light.gathering(seed));
+  };
+  const std::array<FinalGather, 2> gathers{gather(picture.options.seed), gather(~picture.options.seed)};
+  const RecordStore placed = place_roughly(picture, gathers[0]);
+  rough.recorded = true;
+  rough.records = double(placed.records().size());
+  std::vector<Pair> pairs(kRecords);
+  parallel_each(pairs.size(), 1, [&](std::size_t i) { pairs[i] = gather_pair(picture, gathers, placed, int(i)); });
+  GatherCounts all;
+  double gathered = 0;
+  for (const Pair& pair : pairs) {
+    rough.record_error += pair.error2 / double(pairs.size()) * kRays;
+    gathered += pair.gathered ? 2 : 0;
+    all += pair.counts;
+  }
+  if (gathered > 0)
+    rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays) + double(all.distance_rays)) /
+                       (gathered * kRays);
+}
+
+/// Light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found. Paths
+/// that find light of radiance c once in n samples have at least the variance n c^2 (docs/methods/caustics.md). If
+/// paths find no light at all, a single photon proves that they miss some, and the mean of the photons is the best
+/// estimate.
+MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
+  const double missed = std::max(0.0, photons.mean - found), error = found > 0 ? kCertain * photons.mean_error : 0;
+  const double sure = std::max(0.0, missed * missed - error * error);
+  if (!(sure > 0)) return {};
+  return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
+}
+
+/// The samples' indirect light as a share of the picture's light, if the share is above kAuditLimit and the mean of the
+/// light is below kCertain of its standard errors; else 0. So few samples hold the light then that their variances say
+/// nothing about other pixels. For mean and error, a sample counts at most as much as makes its pixel white: one very
+/// bright sample among many does not make the light doubtful. Also 0 if all samples at the `places` with a Lambert lobe
+/// are fewer than kCertain^2 per part of the picture: then they would not suffice even if each of them held the light.
+double unsure_share(const Samples& samples, const Levels& levels, int places) {
+  if (kSamples * places < kCertain * kCertain * kPilotParts) return 0;
+  double sum = 0, seen = 0, squares = 0;
+  for (const auto& some : samples)
+    for (const Sample& sample : some) {
+      const double value = std::min(sample.indirect, kFirst * levels.white);
+      sum += sample.indirect, seen += value, squares += value * value;
+    }
+  const double share = levels.picture > 0 ? sum / (kSamples * double(samples.size()) * levels.picture) : 0;
+  return share > kAuditLimit && seen < kCertain * std::sqrt(squares) ? share : 0;
+}
+
+/// Compares the light of paths with that of photons. Sets the light that paths miss, and the error of a caustic map.
+void compare(const Picture& picture, const SeenLight& photons, const Samples& paths, RoughFrame& rough) {
+  const auto& [caustics, indirect] = photons;
+  const double level = picture.levels.picture, allowed2 = level * level;
+  if (!(allowed2 > 0)) return;
+  const double samples = kSamples * double(paths.size());
+  rough.missed_caustic =
+      missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
+  rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
+  rough.unsure = unsure_share(paths, picture.levels, rough.places);
+  rough.map_error = kMapError2 * caustics.square / allowed2;
+  if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
+    rough.hidden = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
+}
+
+/// Sets lower bounds of work and error for gathering and records, before they are measured. Work: a camera ray, and one
+/// ray from each Lambert lobe. Error: that of all light but layer indirect.
+void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
+  const double seen = double(rough.places) / options.places;
+  rough.gather = rough.path;
+  rough.gather.work = Work::kRay * (1 + seen);
+  rough.gather.all = rough.path.other;
+  rough.gather.without_caustic = rough.path.other_without_caustic;
+  rough.gather.lost_caustic = rough.gather.lost_indirect = 0;
+  rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
+}
+
+/// Sets the values of `rough` that concern gathering.
+void measure_gathering(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
+  const KnownLight known = light.known();
+  RayCounts counts;
+  const Samples gathered = samples_of(picture.scene, picture.view, &known, picture.options, counts);
+  rough.gathered = true;
+  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
+  // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
+  // needs this ray, which ends at its first hit.
+  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
+  rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
+}
+
+}  // namespace
+
+RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
+                       const RoughOptions& options) {
+  RoughFrame rough;
+  rough.paths_of_light = options.photons;
+  const SeenPlaces seen = places_seen(scene, view, options.places, options.seed ^ 0x70696c6f74ull);
+  rough.places = int(std::ranges::count_if(seen.places, &SeenPlace::exists));
+  formats::PhotonBlock photons;
+  if (rough.places > 0) {
+    photons = pilot_photons(scene.tracer, aimed, options.kinds, kPilotPaths, options.seed ^ 0x61727269766564ull);
+    rough.photons_per_path = double(photons.photons.size()) / double(kPilotPaths);
+    if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
+  }
+  const SeenLight shown = rough.places > 0 ? see_photons(scene, view, photons) : SeenLight{};
+  RayCounts counts;
+  const Samples paths = samples_of(scene, view, nullptr, options, counts);
+  const Picture picture{scene, view, options, Levels(paths, shown, view, options.seed)};
+  rough.radiance = mean_of(paths, [](const Sample& s) { return s.sum(); });
+  ask(paths, picture.levels, options.pixel_error, rough);
+  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths));
+  rough.wanted_of = std::max(rough.path.other, kFirst * options.pixel_error * options.pixel_error);
+  if (rough.places == 0) return rough;
+  compare(picture, shown, paths, rough);
+  bound_by_paths(options, rough);
+  const auto enough = [&] { return options.enough && options.enough(rough); };
+  if (enough()) return rough;
+  const RoughLight light(scene, std::move(photons), rough.paths_of_light, options);
+  measure_gathering(picture, light, rough);
+  if (!enough()) measure_records(picture, light, rough);
+  return rough;
+}
+
+}  // namespace tempolux

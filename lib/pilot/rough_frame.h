@@ -1,0 +1,93 @@
+// lib/pilot/rough_frame.h -- measures work and error of each way to a frame's light on a few thousand samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/light/aim.h"
+#include "lib/render/camera_view.h"
+#include "lib/render/path_tracer.h"
+#include "lib/pilot/places_seen.h"
+
+namespace tempolux {
+
+/// CPU times over that of a shadow ray with its light sample and shading, .3 us (docs/pixels.md). Work is counted in
+/// this unit, so that decisions do not depend on the speed or the load of a machine.
+struct Work {
+  static constexpr double kRay = 2;        ///< nearest hit, surface and material: of a path, also for each photon
+  static constexpr double kGatherRay = 4;  ///< the same, and the look-up at its end
+  static constexpr double kPoint = 90;     ///< an irradiance point: density estimates and light samples
+  static constexpr double kRecordLookUp = 3, kCausticLookUp = 9;
+};
+
+/// Work and variance of one sample. Each variance is divided by the square of the error that its pixel may have
+/// (allowed_error at pixel error 1), because a picture file stores about the root of radiance. The value of a sample is
+/// cut where it alone makes its pixel white. A variance is the square of the mean root over 16 x 9 parts of the
+/// picture, because frames take more samples in noisy parts: n samples per pixel leave variance / n.
+struct SampleEffort {
+  double work = 0;                              ///< shadow rays
+  double all = 0, without_caustic = 0;          ///< variance of all light, and of all but layer caustic
+  double other = 0, other_without_caustic = 0;  ///< the same without layer indirect
+  /// Light of layers caustic and indirect above white that a single sample of its place holds, over the picture's
+  /// light. A frame shows such light as lone white pixels, and all other pixels lack it, so the square of the share is
+  /// an error.
+  double lost_caustic = 0, lost_indirect = 0;
+};
+
+/// Light that photons show and paths miss with certainty, in the unit of SampleEffort.
+struct MissedLight {
+  double square = 0;    ///< squared error of a picture without the light
+  double variance = 0;  ///< lower bound of the variance of one path that might find the light
+};
+
+/// Work and error of each way to light. Values that were not measured are lower bounds. If even the bounds make a way
+/// too costly, it need not be measured.
+struct RoughFrame {
+  bool gathered = false, recorded = false;  ///< are gathering and records measured?
+  int places = 0;                           ///< number of visible places with a Lambert lobe
+  double radiance = 0;                      ///< mean of the picture by paths [W/m^2/sr]
+  /// For all light but layer indirect: the mean squared error that the wish allows, at least pixel_error^2, and the
+  /// variance of one sample.
+  double wanted = 0, wanted_of = 0;
+  double samples = 0;  ///< mean number of samples per pixel
+  SampleEffort path;   ///< of whole paths
+  /// Of paths that end at irradiance points. Its variances without layer indirect also hold for frames with records.
+  SampleEffort gather;
+  double record_sample = 0;  ///< shadow rays of a sample that reads a record
+  double records = 0;        ///< number of records that the picture needs
+  double record_ray = 0;     ///< shadow rays of one gather ray of a record and of its continuation
+  double record_error = 0;  ///< squared error of interpolated light at one gather ray per record; n rays divide it by n
+  MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
+  double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
+  double hidden = 0;                   ///< share of the picture that no path finds (hidden_share)
+  /// Indirect light as a share of the picture, if it does not certainly differ from 0 because too few samples hold it;
+  /// else 0.
+  double unsure = 0;
+  double photons_per_path = 0;       ///< mean number of photons that a light path leaves
+  std::uint64_t paths_of_light = 0;  ///< light paths of the photon map (photon_paths)
+};
+
+struct RoughOptions {
+  std::string kinds;                     ///< kinds of photons, as for PhotonOptions::set_kinds: "caustic,indirect"
+  double pixel_error = 0.016;            ///< FrameOptions::pixel_error
+  std::uint64_t photons = 700'000;       ///< usual number of light paths of the map (photon_paths)
+  std::span<const AimSphere> seen = {};  ///< spheres in which points lie; empty: everywhere
+  std::uint64_t seed = 0;
+  int places = kPilotPlaces;  ///< number of measured places of the picture
+  /// Called with the frame so far before gathering is measured, and again before records are. If it returns true, the
+  /// frame is returned as it is. Empty: everything is measured.
+  std::function<bool(const RoughFrame&)> enough = {};
+  const Lights* without_extent = nullptr;  ///< the lights of hidden_share(); null: none hides light
+};
+
+/// Takes four samples at each place by whole paths and four by paths that end at the points of kPilotPaths light paths,
+/// and gathers records at 64 places. Takes .1 to .2 s in all. `aimed`: lights that aim photons where the camera looks.
+/// Same result for any number of threads.
+RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
+                       const RoughOptions& options);
+
+}  // namespace tempolux

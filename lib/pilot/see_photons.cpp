@@ -1,0 +1,118 @@
+#include "lib/pilot/see_photons.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "lib/core/parallel_each.h"
+#include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
+#include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
+#include "lib/points/footprint_density.h"
+#include "lib/render/known_light.h"
+#include "lib/audit/photon_splats.h"
+#include "lib/pilot/places_seen.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kLooks = kPilotPlaces;  ///< number of camera rays that follow mirrors and glass
+
+/// Light that a photon or a camera ray adds to the picture.
+struct SeenFlux {
+  double radiance = 0;   ///< contribution to the mean radiance of the picture [W/m^2/sr]
+  std::size_t part = 0;  ///< pilot_part
+  double noise = 0;      ///< of a camera ray: noise of `radiance` (FootprintLight::noise)
+};
+
+/// Contribution of photon i; 0 if the camera does not see the photon. The sum over photons is unbiased (PhotonSplats).
+SeenFlux seen_flux(const PhotonSplats& splats, const CameraView& view, const PhotonView& photons, std::size_t i) {
+  const std::optional<Splat> splat = splats.splat(photons.photons[i], {}, photons.direction(i));
+  if (!splat) return {};
+  const auto width = std::uint32_t(view.width()), height = std::uint32_t(view.height());
+  return {double(channel_mean(splat->radiance)) / (double(width) * height),
+          pilot_part((splat->pixel % width + 0.5) / width, (splat->pixel / width + 0.5) / height)};
+}
+
+/// Light, by a density of photons, of a place that a camera ray has reached through mirrors and glass. u: position of
+/// the ray in the picture, in [0, 1)^2.
+SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint> seen, Vec2 u) {
+  if (!seen) return {};
+  const Vec3 normal = seen->surface.normal_geometric;
+  const bool front = dot(normal, seen->normal) > 0;
+  const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
+  const Bsdf bsdf(material, front);
+  const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
+  const FootprintLight light =
+      density.estimate(seen->surface.position, {front ? normal : -normal, seen->normal, seen->normal, &bsdf});
+  return {channel_mean(weight * light.irradiance), pilot_part(double(u.x), double(u.y)),
+          channel_mean(weight * light.noise)};
+}
+
+/// Position of camera ray i of kLooks in the picture, in [0, 1)^2.
+Vec2 look_at(std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); }
+
+/// By camera ray the place that it reaches through mirrors and glass, if any. No element if no ray reaches such a
+/// place.
+std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, const CameraView& view) {
+  std::vector<std::optional<SeenPoint>> places(kLooks);
+  parallel_each(kLooks, 64, [&](std::size_t i) {
+    const Vec2 at = look_at(i);
+    const Look look{at.x * float(view.width()), at.y * float(view.height()), PathRandom(kLooks, i)};
+    places[i] = seen_through(scene.tracer, view, look);
+    if (places[i] && !places[i]->by_choice) places[i].reset();
+  });
+  if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) places.clear();
+  return places;
+}
+
+/// seen_behind() of all camera rays for one kind of photons.
+std::vector<SeenFlux> all_behind(const RenderScene& scene, std::span<const std::optional<SeenPoint>> places,
+                                 const PhotonView& photons, formats::PathKind kind) {
+  if (places.empty()) return {};
+  const FootprintDensity density(scene.tracer, photons, {.asked = kAskedPhotons}, kind_bit(kind));
+  std::vector<SeenFlux> behind(density.empty() ? 0 : places.size());
+  parallel_each(behind.size(), 64,
+                [&](std::size_t i) { behind[i] = seen_behind(scene, density, places[i], look_at(i)); });
+  return behind;
+}
+
+/// Sums light that is seen directly (by photon) and behind mirrors and glass (by camera ray).
+SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> behind) {
+  SeenPhotons pilot;
+  std::vector<double> parts(kPilotParts, 0.0), noise(kPilotParts, 0.0);
+  double squares = 0, squares_behind = 0;
+  for (const SeenFlux& one : seen) {
+    pilot.mean += one.radiance;
+    squares += one.radiance * one.radiance;
+    parts[one.part] += one.radiance;
+  }
+  for (const SeenFlux& one : behind) {
+    pilot.mean += one.radiance;
+    parts[one.part] += one.radiance;
+    noise[one.part] += one.noise;
+  }
+  for (const double part : noise) squares_behind += part * part;
+  pilot.mean_error = std::sqrt(squares + squares_behind);
+  for (const double part : parts) pilot.square += part * part * kPilotParts;
+  return pilot;
+}
+
+}  // namespace
+
+SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons) {
+  const std::vector<std::optional<SeenPoint>> places = places_behind(scene, view);
+  const PhotonSplats splats(scene.tracer, view, scene.camera_inside);
+  const auto of_kind = [&](formats::PathKind kind) {
+    std::vector<SeenFlux> seen(photons.photons.size());
+    parallel_each(photons.photons.size(), 64, [&](std::size_t i) {
+      if (photons.photons[i].kind == kind) seen[i] = seen_flux(splats, view, photons, i);
+    });
+    return joined(seen, all_behind(scene, places, photons, kind));
+  };
+  return {of_kind(formats::PathKind::caustic), of_kind(formats::PathKind::indirect)};
+}
+
+}  // namespace tempolux
