@@ -4,7 +4,7 @@
 
 #include "formats/octahedral.h"
 #include "lib/points/footprint_density.h"
-#include "lib/render/shading.h"
+#include "lib/transport/shading.h"
 #include "lib/volume/medium.h"
 
 namespace tempolux {

@@ -14,8 +14,8 @@
 namespace tempolux {
 namespace {
 
-constexpr int kLongest = 64;        ///< events S of a path
-constexpr std::uint32_t kSure = 3;  ///< events before Russian roulette, as in the path tracer
+constexpr std::uint32_t kLongest = 64;  ///< events S of a path
+constexpr std::uint32_t kSure = 3;      ///< events before Russian roulette, as in the path tracer
 constexpr float kMostSurvival = 0.95f;
 /// Radius of a disc in widths of a pixel's footprint, times the root of the number of pixels per path. A disc of radius
 /// r at the edge of a surface of width s extends beyond the surface, which loses about .85 r / s of its light: 1 % of a
@@ -68,37 +68,26 @@ SpecularHits::SpecularHits(const RenderScene& scene, const CameraView& view, std
 /// Follows the events S of one camera path.
 void SpecularHits::follow(const RenderScene& scene, Ray ray, const PixelRandom& random, RayCone cone, Rgb weight,
                           float widen, std::vector<HitPlace>& found) const {
-  const SceneFrame& frame = scene.frame();
-  Inside inside = scene.camera_inside;
-  Rgb throughput(1.0f);
-  for (std::uint32_t bounce = 0; bounce < kLongest; ++bounce) {
-    Hit hit;
-    if (!scene.tracer.intersect(ray, hit)) return;
-    SurfacePoint point = scene.tracer.surface_point(hit);
-    const Vec3 wo = -ray.direction;
-    const bool front = dot(point.normal_geometric, wo) > 0;
-    throughput *= inside.transmittance_to(frame.materials, point.material, front, hit.t);
-    cone.advance(hit.t);
-    const Vec3 smooth = point.normal, normal = front ? point.normal_geometric : -point.normal_geometric;
-    const SurfaceMaterial material(frame, point, cone.width);
-    if (material.values().unlit) return;
-    const ShadingPoint x(point, wo, material);
+  SpecularChain chain(scene.tracer, ray, scene.camera_inside);
+  while (chain.events() < kLongest && chain.meet()) {
+    const std::uint32_t bounce = chain.events();
+    cone.advance(chain.leg());
+    const Vec3 smooth = chain.point().normal;
+    const ShadingPoint& x = chain.shade(cone.width);
+    if (chain.material().unlit) return;
     if (bounce > 0 && x.bsdf.has_diffuse()) {
       const float radius = kFootprints * widen * cone.width;
       found.push_back(
-          {x, ray.origin, normal, smooth,
-           weight * throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * kInvPi / (radius * radius)),
+          {x, chain.ray().origin, x.normal_geometric, smooth,
+           weight * chain.passed() * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * kInvPi / (radius * radius)),
            radius});
     }
     if (!x.bsdf.has_specular()) return;
-    const Bsdf::Sample next =
-        x.bsdf.sample(x.eye, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
-    const Vec3 travel = x.frame.to_world(next.wi);
-    if (next.diffuse || is_black(next.weight) || (next.transmitted ? -1.0f : 1.0f) * dot(travel, normal) <= 0) return;
-    throughput *= next.weight;
-    if (bounce >= kSure && !survives(throughput, kMostSurvival, random.get1(bounce, Purpose::roulette))) return;
-    if (is_solid_glass(material.values())) inside.scatter(point.material, front, next.transmitted);
-    ray = spawn_ray(point, travel);
+    const Scattered next(x, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
+    const float side = next.sample.transmitted ? -1.0f : 1.0f;
+    if (next.sample.diffuse || is_black(next.sample.weight) || side * dot(next.travel, x.normal_geometric) <= 0) return;
+    chain.go_on(next);
+    if (bounce >= kSure && !survives(chain.passed(), kMostSurvival, random.get1(bounce, Purpose::roulette))) return;
   }
 }
 

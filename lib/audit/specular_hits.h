@@ -10,7 +10,7 @@
 #include "formats/photons/photons.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
-#include "lib/render/shading.h"
+#include "lib/transport/specular_chain.h"
 
 namespace tempolux {
 

@@ -12,7 +12,9 @@
 #include "lib/transport/direct_light.h"
 #include "lib/transport/emission.h"
 #include "lib/transport/media.h"
+#include "lib/transport/light_kinds.h"
 #include "lib/transport/roulette.h"
+#include "lib/transport/specular_chain.h"
 
 namespace tempolux {
 namespace {
@@ -23,6 +25,8 @@ constexpr float kLargestSurvival = 0.95f;
 /// Offset that separates the random numbers of media from those of any depth.
 constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;
 constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
+/// Light that is known at a surface where a gather ray starts, if a point represents the surface or records do.
+constexpr LightKinds kCausticKnown{LightKind::caustic};
 
 }  // namespace
 
@@ -43,15 +47,15 @@ struct IncomingRadiance::Further {
   std::uint64_t key = 0;
   Rgb weight{0.0f};    ///< factor of the radiance along this ray in that of the gather ray
   std::size_t of = 0;  ///< index of the gather ray
-  /// True if lights that the ray meets after events S count: they are caustic light of the ray's start, which no point
-  /// has stored.
-  bool sees_lamps = false;
+  /// Light at the ray's start that was added. Without `caustic`, lights that the ray meets after events S count.
+  LightKinds known{};
   float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered the path last
   /// Width of the lobe that sent the ray (BrightPoints::lobe_width), if bright points were sampled explicitly for this
   /// lobe at the ray's start: the ray's hit then contributes only the remaining share. 0: not sampled.
   float sampled_lobe = 0;
   bool specular = false;  ///< true if events S have happened since the ray's start; passing a pane straight is none
   float leg = 0;          ///< m: length of the straight part that ends at the pane that the ray has passed; else 0
+  Inside inside{};        ///< the solids of glass that the ray has entered since its start
 
   /// The ray that continues straight behind a pane. `before` [m]: length of the straight part that ends at the pane.
   Further behind_pane(Rgb passed, float before) const {
@@ -162,7 +166,8 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   std::fill(sources.begin(), sources.end(), RadianceSource{});
   next.clear();
   for (std::size_t i = 0; i < rays.size(); ++i)
-    next.push_back({rays[i], keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ ? 1.0f : 0.0f});
+    next.push_back({rays[i], keys[i], Rgb(1.0f), i, start == Start::medium ? LightKinds{} : kCausticKnown, 0,
+                    bright_ ? 1.0f : 0.0f});
   const Gathered to{counts, next, sources};
   for (int depth = 0; !next.empty(); ++depth) {
     std::swap(now, next);
@@ -235,7 +240,6 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if (!specular || depth >= kDeepest) return result;
   // The other lobes: one sampled direction, with Russian roulette on its weight.
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
-  const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
   const Bsdf::Direction wo = bsdf.along(side->wo_local);
   const float choice = random.get1(2, Purpose::lobe);
   const bool sampled =
@@ -245,24 +249,26 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
     result += Rgb(light.irradiance / double(1 - bsdf.fork_probability(wo)));
     if (source) source->partial = true;
   }
-  const auto next = bsdf.sample(wo, choice, random.get2(2, Purpose::scatter));
+  const Scattered event(bsdf, side->frame, wo, choice, random.get2(2, Purpose::scatter));
+  const Bsdf::Sample& next = event.sample;
+  const Vec3 travel = event.travel;
   if (next.diffuse || is_black(next.weight)) return result;
-  const Vec3 travel = side->frame.to_world(next.wi);
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   Rgb weight = next.weight;
   if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
-  const Further after = next.straight
-                            ? from.behind_pane(weight, met.leg)
-                            : from.after_specular(weight, sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
+  Further after = next.straight
+                      ? from.behind_pane(weight, met.leg)
+                      : from.after_specular(weight, sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
+  event.pass(met.hit, material, dot(met.hit.normal_geometric, met.wo) > 0, after.inside);
   if (source) source->partial = true;
-  return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to,
-                                                   solid && front == next.transmitted ? &material : nullptr);
+  return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to);
 }
 
 /// Radiance [W/m^2/sr] along a ray that continues from `start` after an event S or behind a pane. `distance` [m]:
-/// length of the path before `start`. `inside`: material of the solid glass that the ray crosses, or null.
+/// length of the path before `start`.
 Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from,
-                                              int depth, const Gathered& to, const MaterialValues* inside) const {
+                                              int depth, const Gathered& to) const {
+  const std::vector<Material>& materials = tracer_.frame().materials;
   Hit hit;
   ++to.counts.rays;
   const Ray ray = spawn_ray(start, travel);
@@ -270,19 +276,19 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
   if (const Media* const media = tracer_.frame().media.get()) [[unlikely]] {
     MediumPoint collision;
     if (collides(*media, ray, meets ? hit.t : INFINITY, PathRandom(from.key, kMediaNumbers), 0, collision)) {
-      const Rgb left = inside ? transmittance(*inside, length(collision.position - start.position)) : Rgb(1.0f);
+      const Rgb left = from.inside.transmittance_over(materials, length(collision.position - start.position));
       from.weight *= left;
       return left * scattered_in_media(collision, from, to);
     }
   }
-  const bool sees_lamps = from.phase > 0 || (from.sees_lamps && from.specular);
+  const bool sees_lamps = from.phase > 0 || (!from.known.has(LightKind::caustic) && from.specular);
   if (!meets)
     return sees_lamps && lights_.has_environment() ? weighed_environment(lights_, travel, from.scattering())
                                                    : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
   const float on = length(met.hit.position - start.position);
-  const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
+  const Rgb left = from.inside.transmittance_over(materials, on);
   from.weight *= left;
   meet(-travel, from.leg + on, distance - from.leg, met);
   const Rgb emitted = sees_lamps ? weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0) : Rgb(0.0f);
@@ -307,7 +313,7 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
                         mix64(from.key + 1),
                         weight,
                         from.of,
-                        true,
+                        {},
                         pdf_hg(at.g, at.travel, travel),
                         0});
   return light;
@@ -338,8 +344,8 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
   if (depth > 0 && !survives(weight, kLargestSurvival, random.get1(1, Purpose::roulette))) return irradiance;
-  to.further.push_back(
-      {spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ ? 1.0f : 0.0f});
+  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of,
+                        point ? kCausticKnown : LightKinds{}, 0, bright_ ? 1.0f : 0.0f});
   return irradiance;
 }
 

@@ -59,6 +59,11 @@ void Aim::add(Vec3d centre, double radius, double share) {
 
 Aim::Start Aim::start(Vec3 travel, double u, double v) const {
   const Frame axes(travel);
+  if (empty()) {
+    const Vec2 disc = disc_point(u, v);
+    const float r = float(scene_radius_);
+    return {scene_centre_ + axes.to_world({disc.x * r, disc.y * r, -r}), 1};
+  }
   const Vec3d across(axes.to_world({1, 0, 0})), up(axes.to_world({0, 1, 0}));
   double x, y, density = kUniform;
   std::size_t chosen = discs_.size();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/core/pi.h"
 #include "lib/core/statistics.h"
 #include "lib/core/vec.h"
 
@@ -34,6 +35,11 @@ class Aim {
   /// Radii and weights must be above 0. Without spheres or scene the aim is empty. Scene space, m.
   Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);
 
+  /// The scene sphere's radius [m], and the area [m^2] of its disc, through which all light from outside comes.
+  double scene_radius() const { return scene_radius_; }
+  double disc_area() const { return kPiD * scene_radius_ * scene_radius_; }
+  /// m; from any point of the scene sphere this distance reaches its surface.
+  float distance_beyond() const { return float(scene_radius_ > 0 ? 2 * scene_radius_ : 1); }
   bool empty() const { return discs_.empty(); }  ///< true if photons are not aimed
   std::size_t size() const { return given_; }    ///< number of the given spheres
 
@@ -43,8 +49,8 @@ class Aim {
   };
   /// Start point of light that travels along `travel` (unit). u and v are in [0, 1). u chooses the disc; its place
   /// inside the disc's part of [0, 1) is the first coordinate on the disc, v the second. Neighbouring numbers give
-  /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Must
-  /// not be called if empty().
+  /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Without
+  /// spheres the start is uniform on the scene's disc.
   Start start(Vec3 travel, double u, double v) const;
 
   /// True if one of the given spheres holds the point (scene space).

@@ -29,7 +29,7 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
   };
   for (std::size_t i = 0; i < table.surfaces.size(); ++i)
     for (const TriangleLight& light : triangle_lights(table, i, frame)) join(light.flux());
-  for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
+  for (const PlacedLight& placed : frame.lights) join(PunctualSource::flux(placed.light, table.sphere_radius));
 }
 
 /// Appends the environment's weight to the weights of the other slots. Most of the flux may fall outside of the

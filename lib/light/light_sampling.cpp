@@ -7,7 +7,6 @@
 #include "lib/core/check.h"
 #include "lib/core/random.h"
 #include "lib/light/lights.h"
-#include "lib/light/punctual.h"
 #include "lib/light/sky_guide.h"
 
 namespace tempolux {
@@ -17,11 +16,6 @@ namespace {
 double sun_weight(const PlacedLight& placed, Vec3 normal) {
   const double e = max_component(placed.light.intensity);
   return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
-}
-
-/// pdf [1/sr] of a direction of the environment that is drawn by radiance or from a grid.
-double mixed_pdf(double by_radiance, const SkyGuide::Grid& grid, Vec3 direction) {
-  return kUnguidedShare * by_radiance + (1 - kUnguidedShare) * grid.pdf_solid_angle(direction);
 }
 
 /// Probability of choosing a distant light. `distant` and `others` are irradiances from both kinds of light, the second
@@ -56,8 +50,8 @@ bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, dou
                             LightSample& s) const {
   const double left = u * total;
   if (left < environment_weight_ || total <= environment_weight_)
-    return sample_environment(point, normal, u_float, left / environment_weight_, share * environment_weight_ / total,
-                              s);
+    return SkySource{*environment_, aim_}.sample(point, normal, guide_.get(), share * environment_weight_ / total,
+                                                 left / environment_weight_, u_float, s);
   return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_),
                     share * (1 - environment_weight_ / total), s);
 }
@@ -77,55 +71,7 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, L
     left -= w;
   }
   if (!chosen) return false;
-  s.wi = -chosen->direction;
-  s.position = point + s.wi * distance_beyond();
-  s.facing_irradiance = Rgb(Rgbd(chosen->light.intensity) / (probability * weight / total));
-  s.delta = s.distant = true;
-  return true;
-}
-
-/// u was stretched from u_float.x, which has 24 random bits. Choosing used some of them, so bits made from the other
-/// coordinate are added in their places; likewise for u_float.y.
-bool Lights::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
-                                LightSample& s) const {
-  const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
-  EnvironmentLight::Sample found;
-  const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
-               u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  const SkyGuide::Grid* const grid = guide_ ? guide_->at(point, normal) : nullptr;
-  if (!grid) {
-    if (!environment_->sample(u1, u2, found)) return false;
-  } else {
-    if (u1 >= kUnguidedShare) found.direction = grid->sample((u1 - kUnguidedShare) / (1 - kUnguidedShare), u2);
-    else if (!environment_->sample(u1 / kUnguidedShare, u2, found)) return false;
-    const EnvironmentLight::Place place = environment_->place_of(found.direction);
-    found.radiance = environment_->radiance_at(place);
-    found.pdf_solid_angle = mixed_pdf(environment_->pdf_solid_angle(place, found.direction), *grid, found.direction);
-  }
-  const double pdf = found.pdf_solid_angle * probability;
-  s.wi = found.direction;
-  s.position = point + s.wi * distance_beyond();
-  s.facing_irradiance = Rgb(Rgbd(found.radiance) / pdf);
-  s.pdf_solid_angle = float(pdf);
-  s.distant = true;
-  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
-}
-
-/// Fills the sample with a point or spot light.
-bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const {
-  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
-  const double distance = length(to);
-  if (!(distance > 0)) return false;
-  // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
-  const double nearest = std::max(distance, 1e-6 * sphere_radius_);
-  s.wi = Vec3(to / distance);
-  s.position = placed.position;
-  double falloff = 1;
-  if (placed.light.kind == PunctualLight::Kind::spot)
-    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
-  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
-  s.delta = true;
-  return falloff > 0;
+  return PunctualSource{*chosen, aim_}.sample(point, probability * weight / total, s);
 }
 
 /// Draws a point on the light of a slot that was chosen with this probability. `left` is the remainder of the number
@@ -133,7 +79,12 @@ bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probabi
 inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                                 LightSample& sample) const {
   if (slot >= triangles_.size())
-    return sample_placed(frame_->lights[slots_[slot].light], point, probability, sample) &&
+    return with(slot,
+                [&](const auto& light) {
+                  if constexpr (requires { light.sample(point, probability, sample); })
+                    return light.sample(point, probability, sample);
+                  return false;
+                }) &&
            is_finite(sample.facing_irradiance);
   const TriangleLight& t = triangles_[slot];
   if (joint) {
@@ -142,7 +93,7 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
     u.x = to_float(std::min(left + fill * step, 1.0));
   }
   TrianglePoint on_triangle;
-  if (!sample_triangle(t, point, u, on_triangle)) return false;
+  if (!t.sample(point, u, on_triangle)) return false;
   const double pdf = probability * on_triangle.pdf_solid_angle;
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
@@ -195,7 +146,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (first_slot_[surface] == kNone) return 0;
   const std::uint32_t slot = slot_at(surface, triangle, on_light), light = tree_index_[slot];
   if (light == kNone) return 0;
-  const double on_triangle = pdf_triangle(triangles_[slot], point, on_light);
+  const double on_triangle = triangles_[slot].pdf_solid_angle(point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
   const double share = distant_share(point, normal, from, total);
@@ -208,9 +159,7 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   if (!(environment_weight_ > 0)) return 0;
   double total = 0;
   const double share = distant_share(point, normal, from, total);
-  const SkyGuide::Grid* const grid = guide_ ? guide_->at(point, normal) : nullptr;
-  const double by_radiance = environment_->pdf_solid_angle(place, direction),
-               directed = grid ? mixed_pdf(by_radiance, *grid, direction) : by_radiance;
+  const double directed = SkySource{*environment_, aim_}.pdf_solid_angle(point, normal, guide_.get(), place, direction);
   const float pdf = float(directed * share * environment_weight_ / total);
   return pdf < INFINITY ? pdf : 0;
 }

@@ -15,7 +15,10 @@
 #include "lib/core/vec.h"
 #include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
+#include "lib/light/light_sample.h"
 #include "lib/light/light_tree.h"
+#include "lib/light/punctual.h"
+#include "lib/light/sky_source.h"
 #include "lib/light/triangle_light.h"
 #include "lib/scene/at_frame.h"
 #include "lib/scene/surface_point.h"
@@ -66,28 +69,6 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 /// scene sphere, the segment's origin and bounds, and aim. If two tables have the same hash, a light path of one photon
 /// map may replace the path with the same number in the other map.
 std::string emission_hash(const EmissionTable& table, const Segment& segment);
-
-/// A place or direction of a light that was drawn for a point.
-struct LightSample {
-  Vec3 wi{};                  ///< unit, from the point towards the light
-  Vec3 position{};            ///< on the light; outside the scene for directional lights and the environment
-  float position_offset = 0;  ///< m; the shadow ray ends this far before `position`
-  /// W/m^2 on a surface that faces wi: radiance / pdf; for a delta light I / (d^2 P) or E / P, where P is the
-  /// probability of choosing the light. Multiplied by f cos it gives reflected radiance.
-  Rgb facing_irradiance{0.0f};
-  float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 for a delta light
-  bool delta = false;
-  bool distant = false;  ///< true for the environment and directional lights
-};
-
-/// A photon at its light.
-struct PhotonEmission {
-  Vec3 origin{}, travel{};  ///< scene space, m; unit direction of flight
-  float origin_offset = 0;  ///< m; the photon starts this far along the emitting side's normal
-  Vec3 normal{};            ///< of the emitting side; zero for punctual lights
-  Rgb flux{0.0f};           ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
-  std::uint32_t slot = 0;
-};
 
 /// All lights of one frame: draws light samples and photons.
 class Lights {
@@ -188,24 +169,26 @@ class Lights {
                    bool joint, LightSample& sample) const;
   bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                    LightSample& sample) const;
-  bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
-  bool sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal, From from) const {
     return !has_distant() ? 0 : from == From::all ? sum_distant(normal) : environment_weight_;
   }
   double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
-  bool shines(const EmissionSlot& slot) const;
+  bool shines(std::size_t slot) const;
+  /// Calls f with the light of a slot: a TriangleLight, a PunctualSource or a SkySource.
+  template <class F>
+  decltype(auto) with(std::size_t slot, const F& f) const {
+    if (slot < triangles_.size()) return f(triangles_[slot]);
+    if (slots_[slot].kind == EmissionSlot::Kind::environment) return f(SkySource{*environment_, aim_});
+    return f(PunctualSource{frame_->lights[slots_[slot].light], aim_});
+  }
   void add_slots(const EmissionTable& table);
   void build_tree();
   std::vector<LightBounds> tree_bounds() const;
   Rgbd slot_flux(std::size_t slot) const;  ///< W
-  double disc_area() const { return kPiD * sphere_radius_ * sphere_radius_; }
-  /// m; from any point of the scene sphere this distance reaches its surface.
-  float distance_beyond() const { return float(sphere_radius_ > 0 ? 2 * sphere_radius_ : 1); }
   /// Radiance of a point on a slot's triangle, by barycentric coordinates.
   Rgb emitted_at(std::size_t slot, double b1, double b2) const {
     return triangles_[slot].emitted_at(*frame_, slots_[slot].surface, slots_[slot].triangle, b1, b2);
@@ -215,9 +198,6 @@ class Lights {
   Vec2 direction_numbers(std::size_t slot, const std::array<double, 4>& u) const;
   void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
                      PhotonEmission& e) const;
-  void emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
-  void start_distant(double u, double v, Rgbd flux, PhotonEmission& e) const;
-  void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
   /// Maps u from the part [first, first + width) of [0, 1) to [0, 1).
   static double stretch(double u, double first, double width) {
     return std::clamp((u - first) / width, 0.0, 1 - 0x1p-53);
@@ -226,8 +206,6 @@ class Lights {
 
   const SceneFrame* frame_;
   Which which_;
-  Vec3 sphere_centre_;
-  double sphere_radius_;
   std::vector<EmissionSlot> slots_;
   std::vector<TriangleLight> triangles_;  ///< of the first slots, in the same order
   std::vector<double> cumulative_;        ///< cumulative probability, by slot
@@ -240,7 +218,7 @@ class Lights {
   std::shared_ptr<const EnvironmentLight> environment_;
   std::shared_ptr<const SkyGuide> guide_;  ///< nullptr: none
   double environment_weight_ = 0;  ///< irradiance from the environment, averaged over all normals; 0: none shines
-  Aim aim_;                        ///< of photons from directional lights and environment
+  Aim aim_;                        ///< of photons from directional lights and environment; knows the scene sphere
   LightTree tree_{{}};
 };
 

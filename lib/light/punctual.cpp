@@ -6,6 +6,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/pi.h"
 #include "lib/core/sampling.h"
+#include "lib/light/sky_source.h"
 
 namespace tempolux {
 namespace {
@@ -39,7 +40,7 @@ double SpotProfile::sample_one_minus_cos(double u) const {
   return outer - (outer - inner) * std::cbrt(outside);
 }
 
-Rgbd punctual_flux(const PunctualLight& light, double disc_radius) {
+Rgbd PunctualSource::flux(const PunctualLight& light, double disc_radius) {
   const Rgbd intensity{light.intensity};
   switch (light.kind) {
     case PunctualLight::Kind::point: return intensity * (4 * kPiD);
@@ -47,6 +48,55 @@ Rgbd punctual_flux(const PunctualLight& light, double disc_radius) {
     case PunctualLight::Kind::directional: return intensity * (kPiD * disc_radius * disc_radius);
   }
   return {};
+}
+
+LightBounds PunctualSource::bounds(const Box3&) const {
+  LightBounds b;
+  b.box.add(placed.position);
+  b.axis = placed.direction;
+  b.add_punctual(max_component(placed.light.intensity));
+  b.cos_spread = -1;
+  if (placed.light.kind == PunctualLight::Kind::spot) {
+    // The normals fill the inner cone. A direction of the outer cone's edge makes the angle outer - inner with the
+    // closest of them.
+    b.cos_spread = std::cos(std::min(placed.light.inner_cone_rad, placed.light.outer_cone_rad));
+    b.cos_reach = std::max(0.0f, std::cos(placed.light.outer_cone_rad - std::acos(b.cos_spread)));
+  }
+  return b;
+}
+
+bool PunctualSource::sample(Vec3 point, double probability, LightSample& s) const {
+  s.delta = true;
+  if (placed.light.distant()) {
+    s.wi = -placed.direction;
+    s.position = point + s.wi * aim.distance_beyond();
+    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / probability);
+    s.distant = true;
+    return true;
+  }
+  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
+  const double distance = length(to);
+  if (!(distance > 0)) return false;
+  // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
+  const double nearest = std::max(distance, 1e-6 * aim.scene_radius());
+  s.wi = Vec3(to / distance);
+  s.position = placed.position;
+  double falloff = 1;
+  if (placed.light.kind == PunctualLight::Kind::spot)
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
+  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+  return falloff > 0;
+}
+
+void PunctualSource::emit(double u0, const std::array<double, 4>& u, double, PhotonEmission& e) const {
+  if (placed.light.distant()) {
+    e.travel = placed.direction;
+    start_distant(aim, u0, u[1], Rgbd(e.flux), e);
+    return;
+  }
+  // A point light has no extent, so the first two numbers give the direction.
+  e.origin = placed.position;
+  e.travel = sample_punctual_direction(placed, u0, u[1]);
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {

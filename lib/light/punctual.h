@@ -2,7 +2,12 @@
 // photons.
 #pragma once
 
+#include <array>
+
 #include "lib/core/vec.h"
+#include "lib/light/aim.h"
+#include "lib/light/light_sample.h"
+#include "lib/light/light_tree.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
@@ -24,8 +29,24 @@ struct SpotProfile {
   double sample_one_minus_cos(double u) const;
 };
 
-/// Flux [W] of a light. A directional light's flux is that through a disc of this radius [m].
-Rgbd punctual_flux(const PunctualLight& light, double disc_radius);
+/// A point, spot or directional light at a frame, as one of the kinds of lights (light_sample.h). A ray does not meet
+/// it, so it has no pdf_solid_angle().
+struct PunctualSource {
+  const PlacedLight& placed;
+  const Aim& aim;  ///< of the photons of a directional light; knows the scene sphere
+
+  /// Flux [W]; of a directional light, that through the scene sphere's disc.
+  Rgbd flux() const { return flux(placed.light, aim.scene_radius()); }
+  static Rgbd flux(const PunctualLight& light, double disc_radius);
+  bool emits() const { return max_component(placed.light.intensity) > 0; }
+  bool distant() const { return placed.light.distant(); }
+  /// Bounds of a point or spot light for the light tree, which lies in no closed part.
+  LightBounds bounds(const Box3& backs_within = {}) const;
+  /// Fills the sample of a light that was chosen with this probability. False if no light reaches the point.
+  bool sample(Vec3 point, double probability, LightSample& s) const;
+  /// Emits a photon whose flux is set: u0 and u[1] give the direction, or the start of a directional light.
+  void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
+};
 
 /// Unit direction in which a point or spot light emits a photon, from u1 and u2 in [0, 1). The pdf is in proportion to
 /// intensity: uniform over the sphere for a point light.

@@ -17,7 +17,7 @@ namespace tempolux {
 /// has kLeastHits. Each part has a grid of kRows x kColumns cells of equal solid angle. A cell is drawn by the weight
 /// of the hits in and around the cell; a direction inside the cell is drawn uniformly. A part has no grid if more than
 /// kMostSeen of its rays are hits, because rays of pdf cos / pi then deviate by at most 300 % of their mean; nor if it
-/// has fewer than kLeastHits hits. Derivation and measurements: docs/pixels.md.
+/// has fewer than kLeastHits hits. Derivation and measurements: docs/methods/lights.md.
 class SkyGuide {
  public:
   struct Place {

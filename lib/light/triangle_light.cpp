@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/core/frame.h"
 #include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 #include "lib/light/spherical_triangle.h"
@@ -103,8 +104,20 @@ Vec2 TriangleLight::coordinates(Vec3 in_plane) const {
   return {float(dot(cross(to, e2), n) / square), float(dot(cross(e1, to), n) / square)};
 }
 
-bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample) {
-  const View view(light, from);
+LightBounds TriangleLight::bounds(const Box3& backs_within) const {
+  LightBounds b;
+  b.box.add(corner);
+  b.box.add(corner + edge1);
+  b.box.add(corner + edge2);
+  b.axis = normal;
+  b.add_weight(normal, double(max_component(radiance)) * area);
+  b.two_sided = two_sided && backs_within.empty();
+  if (two_sided) b.backs_within = backs_within;
+  return b;
+}
+
+bool TriangleLight::sample(Vec3 from, Vec2 u, TrianglePoint& sample) const {
+  const View view(*this, from);
   if (!view.visible) return false;
   const bool large = view.large();
   Vec2 b;
@@ -112,28 +125,40 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
   if (large) {
     const double omega = view.solid_angle();
     density = 1 / omega;
-    b = project(light, view, sample_spherical_triangle(as_seen(view.v0, view.v1, view.v2), omega, u));
+    b = project(*this, view, sample_spherical_triangle(as_seen(view.v0, view.v1, view.v2), omega, u));
   } else {
-    b = sample_triangle(u);
+    b = tempolux::sample_triangle(u);
   }
-  const Vec3 offset = light.edge1 * b.x + light.edge2 * b.y, to = view.v0 + offset;
+  const Vec3 shift = edge1 * b.x + edge2 * b.y, to = view.v0 + shift;
   sample.barycentric = b;
-  sample.position = light.corner + offset;
+  sample.position = corner + shift;
   const float distance = length(to);
   if (!(distance > 0)) return false;
   sample.wi = to / distance;
   const double d = distance;
-  sample.pdf_solid_angle = large ? density : density * d * d * d / (light.area * view.height);
+  sample.pdf_solid_angle = large ? density : density * d * d * d / (area * view.height);
   return sample.pdf_solid_angle < INFINITY;
 }
 
-double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position) {
-  const View view(light, from);
+double TriangleLight::pdf_solid_angle(Vec3 from, Vec3 position) const {
+  const View view(*this, from);
   if (!view.visible) return 0;
   if (view.large()) return 1 / view.solid_angle();
   const double d = length(Vec3d(position) - Vec3d(from));
-  const double pdf = d * d * d / (light.area * view.height);
+  const double pdf = d * d * d / (area * view.height);
   return pdf < INFINITY ? pdf : 0;
+}
+
+std::array<double, 2> TriangleLight::emit(double u0, const std::array<double, 4>& u, Vec3 direction,
+                                          PhotonEmission& e) const {
+  // Heitz' map from the square to the triangle, as in sample(), in double precision.
+  const double half = 0.5 * std::min(u0, u[1]), b1 = u0 - half, b2 = u[1] - half;
+  const double side = two_sided ? 1 - 2 * std::floor(2 * u[2]) : 1;
+  e.origin = point(b1, b2);
+  e.normal = normal * float(side);
+  e.origin_offset = offset;
+  e.travel = area > 0 ? Frame(e.normal).to_world(direction) : Vec3{0, 0, 1};
+  return {b1, b2};
 }
 
 }  // namespace tempolux

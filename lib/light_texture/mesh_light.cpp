@@ -39,7 +39,8 @@ std::uint64_t place_of(Vec3 p, float step) {
 
 }  // namespace
 
-MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame) : size_(file.elements.size()) {
+MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame)
+    : size_(file.elements.size()), caustic_(file.header.kinds == "caustic,indirect") {
   const std::vector<formats::MeshElement>& elements = file.elements;
   std::vector<Meeting> meetings;
   std::uint32_t count = 0;

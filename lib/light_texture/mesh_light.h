@@ -24,6 +24,8 @@ class MeshLight {
   /// Irradiance at the hit, on the side to which `geometric` (unit) points. 0 if the file has no element there.
   Rgb irradiance(const SurfacePoint& hit, Vec3 geometric) const;
   std::size_t size() const { return size_; }
+  /// True if the light includes caustic light.
+  bool has_caustic() const { return caustic_; }
 
  private:
   struct Side {
@@ -41,6 +43,7 @@ class MeshLight {
   std::unordered_map<std::uint64_t, Side> sides_;  ///< keyed by surface, triangle, side
   std::vector<Rgb> corners_;                       ///< for each side (n + 1) (n + 2) / 2 corners, in rows of equal v
   std::size_t size_ = 0;                           ///< number of elements
+  bool caustic_ = false;
 };
 
 }  // namespace tempolux

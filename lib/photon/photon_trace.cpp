@@ -163,7 +163,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
     media_->raise_majorants_to(kStepsPerCrossing / media->majorants().mean_chord());
   }
   for (const PlacedLight& placed : tracer.frame().lights)
-    has_point_lights_ |= placed.light.kind != PunctualLight::Kind::directional;
+    has_point_lights_ |= !placed.light.distant();
   directions_ = options.store_volume && media_ && media_->directional();
   directions_ |= options.store_caustic && normal_maps_see_caustics(tracer.frame().materials);
   for (const Material& material : tracer.frame().materials) {
@@ -187,7 +187,7 @@ void PhotonTracer::find_solids_of_lights() {
   std::uint32_t last_surface = kNone;
   for (const EmissionSlot& slot : lights_.slots()) {
     const bool placed = slot.kind == EmissionSlot::Kind::punctual &&
-                        tracer_.frame().lights[slot.light].light.kind != PunctualLight::Kind::directional;
+                        !tracer_.frame().lights[slot.light].light.distant();
     const bool same = slot.surface != kNone && slot.surface == last_surface;
     last_surface = slot.surface;
     if (same) slot_inside_.push_back(slot_inside_.back());

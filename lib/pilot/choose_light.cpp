@@ -19,11 +19,8 @@ constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
 /// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
-/// (docs/pixels.md).
+/// (docs/methods/ways.md).
 constexpr double kFilterGain = 2.4;
-
-/// Squared error of missed light after n samples; at most the square of all the light.
-double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
 
 /// Work and error of one way. map: visible caustic light comes from photons.
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
@@ -43,14 +40,15 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
     way.pixel_error = nearest_on_grid(error_for_variance(variance / rough.wanted_of), 4);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
-  else way.error += left_of(rough.missed_caustic, samples);
-  way.lacks = map ? 0 : rough.hidden;
-  if (method == IndirectMethod::paths) {
-    way.error += left_of(rough.missed, samples);
-    way.unsure = rough.unsure;
-  }
-  const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
-  way.error += lost * lost;
+  // A map holds caustic light, records indirect light; samples find the other layers.
+  const MissedLight caustic = map ? MissedLight{} : effort.missed_caustic,
+                    indirect = records ? MissedLight{} : effort.missed_indirect;
+  way.error += caustic.left(samples);
+  way.error += indirect.left(samples);
+  way.never = caustic.never;
+  way.uncertain = indirect.uncertain;
+  const double lone = caustic.lone + indirect.lone;
+  way.error += lone * lone;
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
@@ -64,7 +62,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
 /// The order of ways_to_light().
 void sort(std::vector<Way>& ways) {
   std::ranges::stable_sort(ways, {},
-                           [](const Way& way) { return std::pair(way.lacks > 0 || way.unsure > 0, way.score()); });
+                           [](const Way& way) { return std::pair(way.never > 0 || way.uncertain > 0, way.score()); });
 }
 
 }  // namespace
@@ -94,8 +92,8 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
       same->rays = std::max(same->rays, way.rays);
       same->pixel_error = std::min(same->pixel_error, way.pixel_error);
       same->measured &= way.measured;
-      same->lacks = std::max(same->lacks, way.lacks);
-      same->unsure = std::max(same->unsure, way.unsure);
+      same->never = std::max(same->never, way.never);
+      same->uncertain = std::max(same->uncertain, way.uncertain);
     }
   sort(all);
   return all;
@@ -112,13 +110,13 @@ std::string because(const std::vector<Way>& ways) {
     words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
   }
   const auto most = [&](double Way::*share) { return std::ranges::max(ways, {}, share).*share; };
-  if (const double lacks = most(&Way::lacks); lacks > 0) {
-    std::snprintf(text, sizeof text, "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * lacks);
+  if (const double never = most(&Way::never); never > 0) {
+    std::snprintf(text, sizeof text, "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * never);
     words += text + std::string("what point, spot and sun lights send by mirrors and smooth glass");
   }
-  if (const double unsure = most(&Way::unsure); unsure > 0) {
+  if (const double uncertain = most(&Way::uncertain); uncertain > 0) {
     std::snprintf(text, sizeof text, "; paths meet %.2g %% of the light too seldom to know how much it is",
-                  100 * unsure);
+                  100 * uncertain);
     words += text;
   }
   return words;

@@ -30,15 +30,15 @@ struct Way {
   double error = 0;        ///< squared error, mean over the pixels, in the unit of SampleEffort
   double pixel_error = 1;  ///< factor for the wish's pixel error with which the way's samples leave the wished error
   bool measured = true;    ///< false: work and error are lower bounds
-  double lacks = 0;        ///< share of the picture that the way never finds (hidden_share)
-  double unsure = 0;       ///< RoughFrame::unsure
+  double never = 0;        ///< MissedLight::never of the layers that the way samples
+  double uncertain = 0;    ///< MissedLight::uncertain of these layers
   double score() const { return work * error; }  ///< the least is best
 };
 
-/// All ways in ascending order of work x squared error; ways that lack light (Way::lacks, Way::unsure) come last.
-/// caustics: may visible caustic light come from photons? A picture of P pixels takes n samples per pixel, each of work
-/// c and variance V. It has M records of k gather rays; a ray costs the work g, and a record has the squared error e /
-/// k.
+/// All ways in ascending order of work x squared error; ways that surely miss light (Way::never, Way::uncertain) come
+/// last. caustics: may visible caustic light come from photons? A picture of P pixels takes n samples per pixel, each
+/// of work c and variance V. It has M records of k gather rays; a ray costs the work g, and a record has the squared
+/// error e / k.
 ///
 ///     work = fixed + P c n + M g k,   error = E / G + e / k + B,   n = V / E
 ///
@@ -51,11 +51,11 @@ struct Way {
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The ways for several frames together, in the same order: each with the sums of work and error over the frames, the
-/// largest number of rays, the smallest pixel error and the largest share of lacking light.
+/// largest number of rays, the smallest pixel error and the largest shares of missed light.
 std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames);
 
 /// Text that explains the order of `ways` (not empty): the score of each way over that of the first, and the light that
-/// ways lack.
+/// ways miss.
 std::string because(const std::vector<Way>& ways);
 
 }  // namespace tempolux

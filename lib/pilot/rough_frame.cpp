@@ -66,8 +66,7 @@ struct Where {
 
 Where where(int i, const CameraView& view, std::uint64_t seed) {
   const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
-  return {int(at.x * float(view.width())), int(at.y * float(view.height())),
-          pilot_part(double(at.x), double(at.y))};
+  return {int(at.x * float(view.width())), int(at.y * float(view.height())), pilot_part(double(at.x), double(at.y))};
 }
 
 /// Takes kSamples samples at each of options.places places. Adds their rays to `counts`.
@@ -175,8 +174,8 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
           .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
           .other = of([](const Sample& s) { return s.other + s.caustic; }),
           .other_without_caustic = of([](const Sample& s) { return s.other; }),
-          .lost_caustic = lost(&Sample::caustic),
-          .lost_indirect = lost(&Sample::indirect)};
+          .missed_caustic = {.lone = lost(&Sample::caustic)},
+          .missed_indirect = {.lone = lost(&Sample::indirect)}};
 }
 
 /// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they
@@ -289,7 +288,8 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
                  int place) {
   Pair pair;
   const Where at = where(place, picture.view, picture.options.seed);
-  std::optional<SeenPoint> seen = seen_through(picture.scene.tracer, picture.view, {float(at.x) + 0.5f, float(at.y) + 0.5f, {}});
+  std::optional<SeenPoint> seen =
+      seen_through(picture.scene.tracer, picture.view, {float(at.x) + 0.5f, float(at.y) + 0.5f, {}});
   if (!seen) return pair;
   const SurfaceMaterial material(picture.scene.frame(), seen->surface, seen->footprint);
   const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
@@ -328,15 +328,16 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
                        (gathered * kRays);
 }
 
-/// Light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found. Paths
-/// that find light of radiance c once in n samples have at least the variance n c^2 (docs/methods/caustics.md). If
-/// paths find no light at all, a single photon proves that they miss some, and the mean of the photons is the best
+/// Adds light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found.
+/// Paths that find light of radiance c once in n samples have at least the variance n c^2 (docs/methods/caustics.md).
+/// If paths find no light at all, a single photon proves that they miss some, and the mean of the photons is the best
 /// estimate.
-MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
+void add_shown(const SeenPhotons& photons, double found, double samples, double allowed2, MissedLight& light) {
   const double missed = std::max(0.0, photons.mean - found), error = found > 0 ? kCertain * photons.mean_error : 0;
   const double sure = std::max(0.0, missed * missed - error * error);
-  if (!(sure > 0)) return {};
-  return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
+  if (!(sure > 0)) return;
+  light.square = photons.square * sure / (photons.mean * photons.mean) / allowed2;
+  light.variance = samples * sure / allowed2;
 }
 
 /// The samples' indirect light as a share of the picture's light, if the share is above kAuditLimit and the mean of the
@@ -344,7 +345,7 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
 /// nothing about other pixels. For mean and error, a sample counts at most as much as makes its pixel white: one very
 /// bright sample among many does not make the light doubtful. Also 0 if all samples at the `places` with a Lambert lobe
 /// are fewer than kCertain^2 per part of the picture: then they would not suffice even if each of them held the light.
-double unsure_share(const Samples& samples, const Levels& levels, int places) {
+double uncertain_share(const Samples& samples, const Levels& levels, int places) {
   if (kSamples * places < kCertain * kCertain * kPilotParts) return 0;
   double sum = 0, seen = 0, squares = 0;
   for (const auto& some : samples)
@@ -362,13 +363,13 @@ void compare(const Picture& picture, const SeenLight& photons, const Samples& pa
   const double level = picture.levels.picture, allowed2 = level * level;
   if (!(allowed2 > 0)) return;
   const double samples = kSamples * double(paths.size());
-  rough.missed_caustic =
-      missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
-  rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
-  rough.unsure = unsure_share(paths, picture.levels, rough.places);
+  MissedLight &caustic = rough.path.missed_caustic, &others = rough.path.missed_indirect;
+  add_shown(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2, caustic);
+  add_shown(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2, others);
+  others.uncertain = uncertain_share(paths, picture.levels, rough.places);
   rough.map_error = kMapError2 * caustics.square / allowed2;
   if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
-    rough.hidden = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
+    caustic.never = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
 }
 
 /// Sets lower bounds of work and error for gathering and records, before they are measured. Work: a camera ray, and one
@@ -379,7 +380,8 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.gather.work = Work::kRay * (1 + seen);
   rough.gather.all = rough.path.other;
   rough.gather.without_caustic = rough.path.other_without_caustic;
-  rough.gather.lost_caustic = rough.gather.lost_indirect = 0;
+  rough.gather.missed_caustic.lone = 0;
+  rough.gather.missed_indirect = {};
   rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
 }
 
@@ -390,6 +392,9 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
   const Samples gathered = samples_of(picture.scene, picture.view, &known, picture.options, counts);
   rough.gathered = true;
   rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
+  const double lone = rough.gather.missed_caustic.lone;
+  rough.gather.missed_caustic = rough.path.missed_caustic;  // camera paths find caustic light
+  rough.gather.missed_caustic.lone = lone;
   // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
   // needs this ray, which ends at its first hit.
   const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);

@@ -11,12 +11,13 @@
 #include "lib/light/aim.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
+#include "lib/pilot/missed_light.h"
 #include "lib/pilot/places_seen.h"
 
 namespace tempolux {
 
-/// CPU times over that of a shadow ray with its light sample and shading, .3 us (docs/pixels.md). Work is counted in
-/// this unit, so that decisions do not depend on the speed or the load of a machine.
+/// CPU times over that of a shadow ray with its light sample and shading, .3 us (docs/methods/ways.md). Work is counted
+/// in this unit, so that decisions do not depend on the speed or the load of a machine.
 struct Work {
   static constexpr double kRay = 2;        ///< nearest hit, surface and material: of a path, also for each photon
   static constexpr double kGatherRay = 4;  ///< the same, and the look-up at its end
@@ -32,16 +33,7 @@ struct SampleEffort {
   double work = 0;                              ///< shadow rays
   double all = 0, without_caustic = 0;          ///< variance of all light, and of all but layer caustic
   double other = 0, other_without_caustic = 0;  ///< the same without layer indirect
-  /// Light of layers caustic and indirect above white that a single sample of its place holds, over the picture's
-  /// light. A frame shows such light as lone white pixels, and all other pixels lack it, so the square of the share is
-  /// an error.
-  double lost_caustic = 0, lost_indirect = 0;
-};
-
-/// Light that photons show and paths miss with certainty, in the unit of SampleEffort.
-struct MissedLight {
-  double square = 0;    ///< squared error of a picture without the light
-  double variance = 0;  ///< lower bound of the variance of one path that might find the light
+  MissedLight missed_caustic{}, missed_indirect{};  ///< light of these layers that the samples miss
 };
 
 /// Work and error of each way to light. Values that were not measured are lower bounds. If even the bounds make a way
@@ -61,12 +53,7 @@ struct RoughFrame {
   double records = 0;        ///< number of records that the picture needs
   double record_ray = 0;     ///< shadow rays of one gather ray of a record and of its continuation
   double record_error = 0;  ///< squared error of interpolated light at one gather ray per record; n rays divide it by n
-  MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
-  double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
-  double hidden = 0;                   ///< share of the picture that no path finds (hidden_share)
-  /// Indirect light as a share of the picture, if it does not certainly differ from 0 because too few samples hold it;
-  /// else 0.
-  double unsure = 0;
+  double map_error = 0;     ///< squared error of the caustic light that a density of photons estimates
   double photons_per_path = 0;       ///< mean number of photons that a light path leaves
   std::uint64_t paths_of_light = 0;  ///< light paths of the photon map (photon_paths)
 };

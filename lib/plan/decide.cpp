@@ -31,12 +31,6 @@ constexpr std::size_t kFewestStates = 3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
-bool has_distant_light(const SceneFrame& frame) {
-  return frame.environment || std::ranges::any_of(frame.lights, [](const PlacedLight& placed) {
-           return placed.light.kind == PunctualLight::Kind::directional;
-         });
-}
-
 CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wish& wish) {
   return CameraView(frame, source.camera_node, wish.width, wish.height);
 }
@@ -300,16 +294,14 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree) {
   SeenAround seen;
   double radius = 0;
-  bool distant_light = false;
   for (const int picture : spread(segment.pictures())) {
     const SceneFrame frame = source.at(picture, false);
-    distant_light = distant_light || has_distant_light(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, tree);
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // Only photons of distant light are aimed. Without distant light the aim serves the points alone, and the first
     // picture decides whether the scene is large enough for an aim.
-    if (picture == segment.first && !distant_light && spheres_around(seen.places, radius).empty()) return "";
+    if (picture == segment.first && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty()) return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);

@@ -233,7 +233,7 @@ std::optional<Box3> box_of_lights(const SceneFrame& frame) {
   if (frame.environment) return std::nullopt;
   Box3 box;
   for (const PlacedLight& placed : frame.lights) {
-    if (placed.light.kind == PunctualLight::Kind::directional) return std::nullopt;
+    if (placed.light.distant()) return std::nullopt;
     box.add(placed.position);
   }
   for (const Surface& surface : frame.surfaces)

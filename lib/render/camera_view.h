@@ -18,7 +18,7 @@ namespace tempolux {
 struct CameraSample {
   Vec2 raster;            ///< raster coordinates
   Vec2 lens{0.5f, 0.5f};  ///< place on the lens as two numbers in [0, 1); (.5, .5) is its centre
-  float shutter = 0;       ///< share of the time the shutter is open, in [0, 1)
+  float shutter = 0;      ///< share of the time the shutter is open, in [0, 1)
 };
 
 /// A camera with a picture size in pixels, at least 1 x 1. Pixel (0, 0) is the top left one. Raster coordinates grow

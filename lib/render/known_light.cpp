@@ -1,22 +1,22 @@
 #include "lib/render/known_light.h"
 
-#include "lib/light_texture/mesh_light.h"
-#include "lib/material/inside.h"
 #include "lib/render/localised_light.h"
-#include "lib/render/shading.h"
+#include "lib/transport/specular_chain.h"
 
 namespace tempolux {
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise) const {
-  if (mesh) return mesh->irradiance(surface, geometric);
-  if (localised) return localised->at(surface, shading, noise);
-  if (records) {
-    const RecordStore::Interpolated found = records->interpolate(surface.position, shading);
-    if (noise) *noise = found.noise;
-    return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+  switch (indirect_by()) {
+    case IndirectBy::texture: return mesh->irradiance(surface, geometric);
+    case IndirectBy::localised: return localised->at(surface, shading, noise);
+    case IndirectBy::photons: return photons->indirect(surface.position, geometric);
+    case IndirectBy::records: {
+      const RecordStore::Interpolated found = records->interpolate(surface.position, shading);
+      if (noise) *noise = found.noise;
+      return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+    }
+    default: return std::nullopt;
   }
-  return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric))
-                                            : std::nullopt;
 }
 
 std::optional<KnownLight::PointLight> KnownLight::point_light(const SurfacePoint& hit, Vec3 geometric, float distance,
@@ -35,35 +35,20 @@ float KnownLight::remaining_share(const SurfacePoint& hit, Vec3 geometric, float
 }
 
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {
-  Ray ray = view.pinhole({look.x, look.y});
-  Hit hit;
-  tracer.intersect(ray, hit);
-  float distance = 0;
-  Rgb passed(1.0f);
-  Inside inside;
-  for (std::uint32_t mirrors = 0; hit.surface != kNone; ++mirrors) {
-    SurfacePoint point = tracer.surface_point(hit);
-    distance += hit.t;
-    const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(distance));
-    const ShadingPoint shading(point, -ray.direction, material);
-    const bool front = dot(point.normal_geometric, ray.direction) < 0;
-    passed *= inside.transmittance_to(tracer.frame().materials, point.material, front, hit.t);
-    if (shading.bsdf.has_diffuse()) {
-      // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
-      const float step = view.pixel_size(distance);
-      return SeenPoint{point, shading.normal, step, mirrors > 0, passed};
-    }
+  SpecularChain chain(tracer, view.pinhole({look.x, look.y}));
+  while (chain.meet()) {
+    // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
+    const float step = view.pixel_size(chain.way());
+    const ShadingPoint& shading = chain.shade(step);
+    if (shading.bsdf.has_diffuse())
+      return SeenPoint{chain.point(), shading.normal, step, chain.events() > 0, chain.passed()};
+    const std::uint32_t mirrors = chain.events();
     if (mirrors + 1 == kMostMirrors) break;
     // u = 0.5 chooses the lobe that has more than half of the light.
-    const float lobe = look.random ? look.random->get1(mirrors, Purpose::lobe) : 0.5f;
-    const Vec2 within = look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
-    const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, lobe, within);
-    if (is_black(next.weight)) break;
-    passed *= next.weight;
-    if (is_solid_glass(material)) inside.scatter(point.material, front, next.transmitted);
-    ray = spawn_ray(point, shading.frame.to_world(next.wi));
-    hit = {};
-    tracer.intersect(ray, hit);
+    const Scattered next(shading, look.random ? look.random->get1(mirrors, Purpose::lobe) : 0.5f,
+                         look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f});
+    if (is_black(next.sample.weight)) break;
+    chain.go_on(next);
   }
   return std::nullopt;
 }

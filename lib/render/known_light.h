@@ -6,6 +6,7 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/place_records.h"
+#include "lib/light_texture/mesh_light.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/photon_light.h"
 
@@ -15,16 +16,24 @@ namespace tempolux {
 inline constexpr int kMostMirrors = 16;
 
 class LocalisedLight;
-class MeshLight;
+
+/// How the indirect light of a camera path's first Lambert lobe is read.
+enum class IndirectBy : std::uint8_t {
+  paths,      ///< not at all: camera paths find it
+  points,     ///< from points at the hits of rays that start at the lobe
+  photons,    ///< from photons around the place
+  records,    ///< from records around the place
+  localised,  ///< from static records and the changes by movers
+  texture,    ///< from a light texture
+};
 
 /// Irradiance [W/m^2] from records, points and photons. A member may be null; camera paths then find that light
 /// themselves. All members must outlive this object. Positions are in scene space. Thread-safe.
 class KnownLight {
  public:
   const RecordStore* records = nullptr;  ///< indirect light at the first Lambert lobe of a camera path
-  const MeshLight* mesh = nullptr;       ///< replaces records: a light texture of kind indirect
-  bool mesh_has_caustic =
-      false;  ///< the light texture also holds kind caustic; indirect() returns the sum of both kinds
+  /// Replaces records: a light texture of kind indirect. If it also holds kind caustic, indirect() is the sum of both.
+  const MeshLight* mesh = nullptr;
   const LocalisedLight* localised = nullptr;  ///< replaces records: static records and the changes by movers
   const PointLookup* points = nullptr;        ///< light of all kinds at the hits of rays that start at a Lambert lobe
   /// Caustic light; also indirect light, if the map holds this kind and there are no records.
@@ -43,7 +52,16 @@ class KnownLight {
   /// transmission of smooth glass), so that both lobes are followed? Gloss and glass reflect about 4 %. Without a fork
   /// one path in 25 follows the reflection, and its pixel is too bright (or too dark before a bright sky). Without
   /// known light both branches are whole paths, and a fork costs as much as it gains.
-  bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
+  bool forks() const { return indirect_by() != IndirectBy::paths; }
+  /// How indirect light is read.
+  IndirectBy indirect_by() const {
+    return mesh                                 ? IndirectBy::texture
+           : localised                          ? IndirectBy::localised
+           : records                            ? IndirectBy::records
+           : photons && photons->has_indirect() ? IndirectBy::photons
+           : points                             ? IndirectBy::points
+                                                : IndirectBy::paths;
+  }
 
   /// Indirect irradiance [W/m^2] at the first Lambert lobe of a camera path. Both normals are unit vectors on the
   /// side that is seen. Empty if no record is valid: a gather ray must then estimate the light. `noise` receives the
@@ -52,7 +70,7 @@ class KnownLight {
   /// True if indirect() or caustic() may report noise.
   bool has_noise() const { return records || localised || photons; }
   /// True if caustic light is known.
-  bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
+  bool has_caustic() const { return photons || (mesh && mesh->has_caustic()); }
   /// Caustic light [W/m^2]; call only if has_caustic(). 0 if indirect() includes caustic light.
   FootprintLight caustic(Vec3 position, const LitSurface& surface) const {
     return photons ? photons->caustic(position, surface) : FootprintLight{};

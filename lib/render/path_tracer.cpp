@@ -4,11 +4,12 @@
 #include "lib/material/inside.h"
 #include "lib/photon/photon_path.h"
 #include "lib/render/known_light.h"
-#include "lib/render/shading.h"
+#include "lib/transport/light_kinds.h"
 #include "lib/scene/texture_lookup.h"
 #include "lib/transport/emission.h"
 #include "lib/transport/media.h"
 #include "lib/transport/roulette.h"
+#include "lib/transport/specular_chain.h"
 
 namespace tempolux {
 namespace {
@@ -18,23 +19,20 @@ constexpr std::uint32_t kRouletteFrom = 3;  ///< paths of fewer bounces always s
 /// A path between two vertices: its ray, its events so far, and which light was added already. Here an event D is
 /// scattering by a Lambert lobe or in a medium.
 struct PathState {
-  PixelRandom random;           ///< random numbers of the path, by bounce
-  Layers* result;               ///< the part of the sample that receives the light found from here on
-  Ray ray;                      ///< leaves the last vertex
-  Hit hit;                      ///< what `ray` meets
-  RayCone cone;                 ///< width of the path's footprint, for look-ups in textures
-  Rgb throughput{1.0f};         ///< product of the weights of all events
-  EyePath path;                 ///< the events so far: they decide the layer of light that is found
-  Inside inside;                ///< the glass in which `ray` runs
-  LastScatter last;             ///< the last vertex and its pdf, for MIS
-  std::uint32_t bounce = 0;     ///< number of events
-  bool forked = false;          ///< both lobes of a surface have been followed: the path forks once
-  bool matte = false;           ///< there was an event D; the fields below concern the last one
-  bool caustic_known = false;   ///< light that arrives at its place by events S was added
-  bool indirect_known = false;  ///< light that arrives at its place by events D was added
-  bool specular = false;        ///< events S followed
-  bool bright_sampled =
-      false;  ///< bright points were sampled explicitly: the next Lambert lobe adds the remaining light
+  PixelRandom random;        ///< random numbers of the path, by bounce
+  Layers* result;            ///< the part of the sample that receives the light found from here on
+  Ray ray;                   ///< leaves the last vertex
+  Hit hit;                   ///< what `ray` meets
+  RayCone cone;              ///< width of the path's footprint, for look-ups in textures
+  Rgb throughput{1.0f};      ///< product of the weights of all events
+  EyePath path;              ///< the events so far: they decide the layer of light that is found
+  Inside inside;             ///< the glass in which `ray` runs
+  LastScatter last;          ///< the last vertex and its pdf, for MIS
+  std::uint32_t bounce = 0;  ///< number of events
+  bool forked = false;       ///< both lobes of a surface have been followed: the path forks once
+  bool matte = false;        ///< there was an event D; the fields below concern the last one
+  LightKinds known{};        ///< light at its place that was added; after `bright` the next Lambert lobe adds the rest
+  bool specular = false;     ///< events S followed
   /// Distance [m] after which a ray from a Lambert lobe has spread as far as this path. The path's length since the
   /// last event D, if no glossy event widened the path; 0 if it has met only smooth mirrors and glass.
   float distance = 0;
@@ -44,7 +42,7 @@ struct PathState {
   /// the middle.
   void widen(float pdf_solid_angle) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * pdf_solid_angle))); }
   /// True if light that the path meets now has not been added yet.
-  bool light_counts() const { return !(matte && specular && caustic_known); }
+  bool light_counts() const { return !(matte && specular && known.has(LightKind::caustic)); }
 };
 
 /// A surface that a path has reached, and which light that arrives there was already added from records, points and
@@ -52,11 +50,7 @@ struct PathState {
 struct Vertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
-  bool indirect_known = false;  ///< light that arrives by events D was added
-  bool direct_known = false;    ///< light that arrives from lights was added: the Lambert lobe samples no light
-  bool caustic_known = false;   ///< light that arrives by events S was added
-  bool bright_sampled = false;  ///< bright points were sampled explicitly
-  bool lamps_apart = false;     ///< records were read that leave out the light of KnownLight::lamp_spots
+  LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
   float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
@@ -84,15 +78,15 @@ class EyeTracer {
   bool scatter(const Vertex& at, float u_lobe, float times, PathState& state) const;
   bool survives(PathState& state, float most) const;
   /// Sets the state after an event D.
-  static void begin_matte(bool caustic_known, bool indirect_known, bool bright_sampled, PathState& state) {
-    state.matte = true, state.specular = false;
-    state.caustic_known = caustic_known, state.indirect_known = indirect_known, state.bright_sampled = bright_sampled;
+  static void begin_matte(LightKinds known, PathState& state) {
+    state.matte = true, state.specular = false, state.known = known;
     state.distance = 0, state.spread = 1;
   }
   void go_on(const Ray& ray, PathState& state) const;
-  bool samples_diffuse(const Vertex& at) const { return !at.direct_known && at.x.bsdf.has_diffuse(); }
+  bool samples_diffuse(const Vertex& at) const { return !at.known.has(LightKind::direct) && at.x.bsdf.has_diffuse(); }
   bool samples_specular(const Vertex& at, const PathState& state) const {
-    return !(state.matte && state.caustic_known) && at.x.bsdf.has_specular() && !at.x.bsdf.specular_is_delta();
+    return !(state.matte && state.known.has(LightKind::caustic)) && at.x.bsdf.has_specular() &&
+           !at.x.bsdf.specular_is_delta();
   }
   Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
   void sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
@@ -140,9 +134,10 @@ void EyeTracer::go_on(const Ray& ray, PathState& state) const {
 /// Bsdf. Returns false if the path ends.
 bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& state) const {
   const ShadingPoint& x = at.x;
-  const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, state.random.get2(state.bounce, Purpose::scatter));
-  if (is_black(next.weight) || (at.direct_known && next.diffuse)) return false;
-  const Vec3 wi = x.frame.to_world(next.wi);
+  const Scattered event(x, u_lobe, state.random.get2(state.bounce, Purpose::scatter));
+  const Bsdf::Sample& next = event.sample;
+  if (is_black(next.weight) || (at.known.has(LightKind::direct) && next.diffuse)) return false;
+  const Vec3 wi = event.travel;
   if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
   state.throughput *= next.weight * (1 / times);
   if (next.straight) {  // MIS keeps the pdf at the last vertex, because light samples from there pass panes as well
@@ -154,13 +149,12 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   state.path.scatter(next.diffuse);
   if (next.diffuse) {
     state.throughput *= at.remaining_share;
-    begin_matte(at.caustic_known, at.indirect_known, at.bright_sampled, state);
+    begin_matte(at.known, state);
   } else {
     state.specular = true;
     state.widen(x.bsdf.gloss_density(next.wi, x.eye));
   }
-  const bool front = dot(x.surface.normal_geometric, state.ray.direction) < 0;
-  if (!next.diffuse && is_solid_glass(at.material)) state.inside.scatter(x.surface.material, front, next.transmitted);
+  event.pass(x.surface, at.material, dot(x.surface.normal_geometric, state.ray.direction) < 0, state.inside);
   if (!survives(state, kLargestPhotonSurvival)) return false;
 
   LastScatter& last = state.last;
@@ -179,7 +173,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
 /// Scatters in a medium: samples a light, applies Russian roulette and draws a new ray. Returns false if the path ends.
 bool EyeTracer::scatter_in_medium(const MediumPoint& point, PathState& state) const {
   state.path.scatter_in_medium();
-  begin_matte(false, false, false, state);
+  begin_matte({}, state);
   state.cone = {};
   state.throughput *= point.albedo;
   if (is_black(state.throughput)) return false;
@@ -210,7 +204,7 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, PathState& state) co
   MediumPoint collision;
   if (!collides(media, state.ray, way, state.random.hashed(), state.bounce, collision)) return Passed::through;
   if (state.bounce == 0) parts_.own.coverage = 1;
-  if (state.indirect_known) return Passed::ended;
+  if (state.known.has(LightKind::indirect)) return Passed::ended;
   if (state.inside.any())
     state.throughput *=
         state.inside.transmittance_over(scene_.frame().materials, length(collision.position - state.ray.origin));
@@ -283,7 +277,7 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
     else
       for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
   };
-  if (at.lamps_apart)
+  if (at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps))
     each([&](const PixelRandom& random, Layers& result) { sample_lamp_spots(at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;
   if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
@@ -292,7 +286,7 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
 
 /// Follows effort_.onward rays from the Lambert lobe of the first matte surface, which add to the part `onward`.
 void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const {
-  if (at.indirect_known && at.caustic_known && !known_->lights_are_met) return;
+  if (at.known.has(LightKind::indirect) && at.known.has(LightKind::caustic) && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
     PathState next = state;
     next.random = state.random.of_sample(effort_.onward_first + i);
@@ -350,7 +344,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   const EyePath& path = state.path;
   Layers& result = *state.result;
   const float u = state.random.get1(state.bounce, Purpose::gather);
-  if (state.bright_sampled && !state.specular)
+  if (state.known.has(LightKind::bright) && !state.specular)
     at.remaining_share = known.remaining_share(x.surface, x.normal_geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
@@ -363,8 +357,8 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
             known.point_light(x.surface, x.normal_geometric, state.distance, u)) {
       ++counts_.points_read;
       result[layer] += reflected * stored->irradiance;
-      at.indirect_known = at.caustic_known = true;
-      at.direct_known = stored->has_direct;
+      at.known = {LightKind::indirect, LightKind::caustic, LightKind::lamps};
+      if (stored->has_direct) at.known.add(LightKind::direct);
       return;
     }
   }
@@ -376,10 +370,10 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     result[layer] +=
         reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
     counts_.shadow += rays.shadow_rays;
-    at.bright_sampled = true;
+    at.known.add(LightKind::bright);
   };
   if (known.has_caustic()) {
-    at.caustic_known = true;
+    at.known.add(LightKind::caustic);
     const Layer caustic = path.after(true).after(false).layer();
     const FootprintLight light =
         known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
@@ -393,9 +387,9 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   Rgb noise(0.0f);
   if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, &noise)) {
     ++counts_.lookups;
-    at.indirect_known = true;
+    at.known.add(LightKind::indirect);
+    if (!known.lamp_spots) at.known.add(LightKind::lamps);
     result[layer] += reflected * *indirect;
-    at.lamps_apart = known.lamp_spots != nullptr;
     if (layer == Layer::indirect) parts_.stored_noise.indirect += reflected * noise;
   } else {
     ++counts_.gathered;
@@ -419,8 +413,9 @@ bool EyeTracer::step(PathState& state) const {
   SurfacePoint point = scene_.tracer.surface_point(state.hit);
   arrive(point, state);
   // If true, only light by events S and light behind panes has not been added yet.
-  const bool only_specular = state.indirect_known;
-  if (only_specular && state.caustic_known && !may_be_pane(frame.materials[point.material])) return false;
+  const bool only_specular = state.known.has(LightKind::indirect);
+  if (only_specular && state.known.has(LightKind::caustic) && !may_be_pane(frame.materials[point.material]))
+    return false;
 
   const Vec3 smooth = point.normal;
   const SurfaceMaterial material(frame, point, state.cone.width);
@@ -429,12 +424,13 @@ bool EyeTracer::step(PathState& state) const {
     return false;
   }
   const ShadingPoint x(point, -state.ray.direction, material);
-  Vertex at{x, material, only_specular, only_specular, only_specular};
+  Vertex at{x, material};
+  if (only_specular) at.known = {LightKind::direct, LightKind::caustic, LightKind::indirect, LightKind::lamps};
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
     at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(at, state);
-  return !(at.direct_known && !x.bsdf.has_specular()) && leave(at, state);
+  return !(at.known.has(LightKind::direct) && !x.bsdf.has_specular()) && leave(at, state);
 }
 
 void EyeTracer::follow(PathState state) const {

@@ -9,7 +9,7 @@
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
 #include "lib/render/known_light.h"
-#include "lib/render/shading.h"
+#include "lib/transport/specular_chain.h"
 
 namespace tempolux {
 namespace {
@@ -23,13 +23,13 @@ struct Shown {
 };
 
 /// The direction in which a mirror or smooth glass continues the ray; empty if the surface has no delta lobe.
-std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
+std::optional<Scattered> sharp_way(const ShadingPoint& shading) {
   if (!shading.bsdf.has_specular() || !shading.bsdf.specular_is_delta()) return std::nullopt;
   // 0.5 chooses the lobe that has more than half of the light. If that is a Lambert lobe below a mirror, a number close
   // to 0 or 1 chooses the mirror.
   for (const float lobe : {0.5f, 0.0001f, 0.9999f}) {
-    const Bsdf::Sample next = shading.bsdf.sample(shading.eye, lobe, {0.5f, 0.5f});
-    if (next.delta && !next.diffuse && !is_black(next.weight)) return next;
+    const Scattered next(shading, lobe, {0.5f, 0.5f});
+    if (next.sample.delta && !next.sample.diffuse && !is_black(next.sample.weight)) return next;
   }
   return std::nullopt;
 }
@@ -43,26 +43,21 @@ std::uint32_t mixed(std::uint32_t id, std::uint32_t next) {
 /// Follows a camera ray through mirrors and glass to the first surface without a delta lobe.
 Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
   Shown shown;
-  Ray ray = eye;
-  float way = 0;
-  for (int mirrors = 0;; ++mirrors) {
-    Hit hit;
-    tracer.intersect(ray, hit);
-    if (hit.surface == kNone) return {.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone};
-    SurfacePoint point = tracer.surface_point(hit);
-    way += hit.t;
-    const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(way));
-    const ShadingPoint shading(point, -ray.direction, material);
-    shown.id = mirrors > 0 ? mixed(shown.id, point.object) : point.object;
-    shown.depth = float(view.depth(eye.origin + eye.direction * way));
+  SpecularChain chain(tracer, eye);
+  while (chain.meet()) {
+    const bool mirrored = chain.events() > 0;
+    const ShadingPoint& shading = chain.shade(view.pixel_size(chain.way()));
+    shown.id = mirrored ? mixed(shown.id, chain.point().object) : chain.point().object;
+    shown.depth = float(view.depth(eye.origin + eye.direction * chain.way()));
     shown.normal = shading.normal;
     const float cosine = std::max(shading.wo_local.z, 1e-3f);
-    shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(cosine) : Rgb(mirrors > 0 ? 0.0f : 1.0f);
-    if (mirrors > 0) shown.albedo += shading.bsdf.diffuse_reflectance(cosine);
-    const std::optional<Bsdf::Sample> next = mirrors < kMostMirrors ? sharp_way(shading) : std::nullopt;
+    shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(cosine) : Rgb(mirrored ? 0.0f : 1.0f);
+    if (mirrored) shown.albedo += shading.bsdf.diffuse_reflectance(cosine);
+    const std::optional<Scattered> next = chain.events() < kMostMirrors ? sharp_way(shading) : std::nullopt;
     if (!next) return shown;
-    ray = spawn_ray(point, shading.frame.to_world(next->wi));
+    chain.go_on(*next);
   }
+  return {.id = chain.events() > 0 ? mixed(shown.id, kNone) : kNone};
 }
 
 }  // namespace

@@ -41,10 +41,8 @@ CameraExtras read_camera_extras(const std::string& extras, const std::string& pl
   numbers("focus_m", read.focus_m);
   numbers("shutter_frames", read.shutter_frames);
   if (const auto first = object.find("first_frame"); first != object.end()) {
-    if (first->is_number_integer() && std::abs(first->get<double>()) <= kMost)
-      read.first_frame = first->get<int>();
-    else
-      leave_out("first_frame", "a whole number");
+    if (first->is_number_integer() && std::abs(first->get<double>()) <= kMost) read.first_frame = first->get<int>();
+    else leave_out("first_frame", "a whole number");
   }
   if (const auto position = object.find("shutter_position"); position != object.end()) {
     const std::string word = position->is_string() ? position->get<std::string>() : "";

@@ -42,6 +42,12 @@ bool Scene::has_camera() const {
   return std::ranges::any_of(nodes, [](const Node& node) { return node.camera >= 0; });
 }
 
+bool Scene::has_distant_light() const {
+  return environment || std::ranges::any_of(nodes, [&](const Node& node) {
+           return node.light >= 0 && lights[std::size_t(node.light)].distant();
+         });
+}
+
 int Scene::camera_node(const std::string& name) const {
   int first = -1;
   std::string names;

@@ -177,6 +177,8 @@ struct PunctualLight {
   Rgb intensity{1.0f};  ///< colour x intensity: W/sr (point, spot) or W/m^2 (directional)
   float inner_cone_rad = 0, outer_cone_rad = 0.785398f;  ///< spot: half angles
 
+  /// True if the light is infinitely far away and has a direction in place of a position.
+  bool distant() const { return kind == Kind::directional; }
   bool operator==(const PunctualLight&) const = default;
 };
 
@@ -264,6 +266,8 @@ struct Scene {
 
   /// True if a node of the scene has a camera.
   bool has_camera() const;
+  /// True if there is light from outside of the scene: an environment, or a node with a directional light.
+  bool has_distant_light() const;
   /// Index into `nodes` of the node whose camera has this name, or which has this name itself. An unnamed camera is
   /// called "camera INDEX"; "auto" is the first camera in the file. Throws InputError that lists the names, or explains
   /// how to export cameras.

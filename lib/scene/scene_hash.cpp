@@ -148,7 +148,7 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
       hasher.add(placed.light.inner_cone_rad);
       hasher.add(placed.light.outer_cone_rad);
     }
-    if (placed.light.kind != PunctualLight::Kind::directional) hasher.add(placed.position);
+    if (!placed.light.distant()) hasher.add(placed.position);
     if (placed.light.kind != PunctualLight::Kind::point) hasher.add(placed.direction);
   }
   for (const Surface& surface : surfaces) {

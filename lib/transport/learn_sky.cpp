@@ -13,7 +13,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRays = 4;  ///< of a place (figures: docs/pixels.md)
+constexpr std::uint32_t kRays = 4;  ///< of a place (figures: docs/methods/lights.md)
 constexpr std::uint64_t kSeed = 0x736b79;
 
 /// Appends the rays of place `number` that see the environment, weighed by the radiance that arrives.

@@ -19,7 +19,8 @@ struct SeenPlace {
 };
 
 /// Number of places for a guide. If one ray in fifty finds a window, the rays of all places make 1300 hits, enough for
-/// 10 to 20 parts (SkyGuide). Twelve times the rays reduce the variance of a light sample by 4 % more (docs/pixels.md).
+/// 10 to 20 parts (SkyGuide). Twelve times the rays reduce the variance of a light sample by 4 % more
+/// (docs/methods/lights.md).
 inline constexpr std::size_t kSkyPlaces = 16384;
 
 /// Sends four rays from each place, with the pdf cos / pi [1/sr] about the shading normal, and makes a guide from those

@@ -61,18 +61,12 @@ void SceneInput::add_environment() {
   if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");
 }
 
-bool SceneInput::has_distant_light() const {
-  return scene_.environment || std::ranges::any_of(scene_.lights, [](const PunctualLight& punctual) {
-           return punctual.kind == PunctualLight::Kind::directional;
-         });
-}
-
 /// Distant light enters through a sphere around all surfaces and media of the frame. So with distant light and media
 /// each frame has its own bounds, whether it is made alone or in a range. With frozen majorants the majorants' box
 /// replaces the media's boxes: photons of all frames of a segment then start from the same sphere.
 void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
-  const bool adds_media = read_volumes && volumes_->any() && has_distant_light();
+  const bool adds_media = read_volumes && volumes_->any() && scene_.has_distant_light();
   if (inside && (!adds_media || bounds_of_ == frame)) return;
   Segment segment = segment_of(scene_, frame, time_);
   bounds_of_.reset();

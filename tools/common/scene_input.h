@@ -46,7 +46,6 @@ class SceneInput {
  private:
   void add_environment();
   void enter_segment(int frame, bool read_volumes);
-  bool has_distant_light() const;
 
   Tool& tool_;
   Scene scene_;

@@ -96,7 +96,6 @@ void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFr
   history_ = file.header.history;
   mesh_ = std::make_unique<MeshLight>(file, frame);
   known_.mesh = mesh_.get();
-  known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
 }
 
 void IndirectLight::read_cache(Tool& tool, const std::string& name, const RenderScene& scene,

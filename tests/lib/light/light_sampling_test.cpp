@@ -198,7 +198,7 @@ TEST(TriangleLight, HasTheSolidAngleOfAnOctant) {
   Vec3d mean;
   for (std::uint32_t i = 0; i < 1 << 14; ++i) {
     TrianglePoint p;
-    ASSERT_TRUE(sample_triangle(t, {0, 0, 0}, sobol_owen_2d(i, 1), p));
+    ASSERT_TRUE(t.sample({0, 0, 0}, sobol_owen_2d(i, 1), p));
     EXPECT_NEAR(p.pdf_solid_angle, 2 / std::numbers::pi, 1e-6);
     mean += Vec3d(p.wi) / double(1 << 14);
   }

@@ -64,11 +64,11 @@ TEST(SpotProfile, DrawsFollowTheFalloff) {
 /// Point: 4 pi I. Spot: I times its solid angle. Directional: E times the disc.
 TEST(PunctualFlux, OnPaper) {
   PunctualLight light = spot(0, kPiD / 2);
-  EXPECT_NEAR(punctual_flux(light, 3).g, 2 * 2 * kPiD / 3, 1e-5);
+  EXPECT_NEAR(PunctualSource::flux(light, 3).g, 2 * 2 * kPiD / 3, 1e-5);
   light.kind = PunctualLight::Kind::point;
-  EXPECT_NEAR(punctual_flux(light, 3).r, 4 * kPiD, 1e-5);
+  EXPECT_NEAR(PunctualSource::flux(light, 3).r, 4 * kPiD, 1e-5);
   light.kind = PunctualLight::Kind::directional;
-  EXPECT_NEAR(punctual_flux(light, 3).b, 0.5 * kPiD * 9, 1e-5);
+  EXPECT_NEAR(PunctualSource::flux(light, 3).b, 0.5 * kPiD * 9, 1e-5);
 }
 
 /// The mean direction of a spot with angles of 0 and 90 degrees: the integral of cos t times the density 3 cos^2 t / (2

@@ -56,9 +56,9 @@ TEST(WaysToLight, CostAndErrAsDerived) {
 /// lack both layers, unless a map shows caustic light; records lack caustic light alone.
 TEST(WaysToLight, LackWhatLoneSamplesBring) {
   RoughFrame rough = example();
-  rough.path.lost_caustic = 0.2;
-  rough.path.lost_indirect = 0.3;
-  rough.gather.lost_caustic = 0.1;
+  rough.path.missed_caustic.lone = 0.2;
+  rough.path.missed_indirect.lone = 0.3;
+  rough.gather.missed_caustic.lone = 0.1;
   const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
   EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 + 0.25, 1e-12);
   EXPECT_NEAR(way(ways, IndirectMethod::paths, true).error, 0.1 + 0.09, 1e-12);
@@ -152,7 +152,7 @@ TEST(WaysToLight, ThatSurelyLackLightComeLast) {
   rough.path = {10, 1, 1, 1, 1};
   ASSERT_FALSE(ways_to_light(rough, kOrder, true).front().map);
   EXPECT_EQ(because(ways_to_light(rough, kOrder, true)).find("lacks"), std::string::npos);
-  rough.hidden = 0.049;
+  rough.path.missed_caustic.never = rough.gather.missed_caustic.never = 0.049;
   const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
   for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_EQ(ways[i].map, i < 3);
   EXPECT_LT(ways[3].score(), ways[0].score());
@@ -165,7 +165,7 @@ TEST(WaysToLight, PathsThatSeldomMeetTheLightComeLast) {
   RoughFrame rough = example();
   const Order small{1e4, 0, false};
   ASSERT_EQ(ways_to_light(rough, small, true).front().method, IndirectMethod::paths);
-  rough.unsure = 0.3;
+  rough.path.missed_indirect.uncertain = 0.3;
   const std::vector<Way> ways = ways_to_light(rough, small, true);
   for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_EQ(ways[i].method == IndirectMethod::paths, i >= 4);
   EXPECT_NE(because(ways).find("paths meet 30 % of the light too seldom"), std::string::npos) << because(ways);
@@ -177,8 +177,8 @@ TEST(WaysToLight, PathsThatSeldomMeetTheLightComeLast) {
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};
-  rough.missed.square = 5;
-  rough.missed.variance = 1e9;
+  rough.path.missed_indirect.square = 5;
+  rough.path.missed_indirect.variance = 1e9;
   EXPECT_NE(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
 }
 

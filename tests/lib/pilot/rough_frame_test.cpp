@@ -51,8 +51,8 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_GE(rough.samples, 4);
   EXPECT_EQ(rough.map_error, 0) << "nothing is caustic";
   EXPECT_EQ(rough.missed_caustic.square, 0);
-  EXPECT_LT(rough.path.lost_indirect, 0.016) << "less than the wish's error";
-  EXPECT_EQ(rough.unsure, 0);
+  EXPECT_LT(rough.path.missed_indirect.lone, 0.016) << "less than the wish's error";
+  EXPECT_EQ(rough.path.missed_indirect.uncertain, 0);
 }
 
 /// A lamp of 30 cm above a black board shines at the ceiling from 3 cm. Nearly all light of the room comes from the
@@ -69,7 +69,7 @@ TEST(RoughFrame, OneSampleInHundredsMeetsTheLight) {
                  test::matte(Rgb(0.0f)));  // lamps shine to both sides
   const RoughFrame rough = rough_of(scene.frame(), 64, 65536, {}, 8192);
   EXPECT_LT(rough.samples, 60);
-  EXPECT_GT(rough.path.lost_indirect, 0.5);
+  EXPECT_GT(rough.path.missed_indirect.lone, 0.5);
 }
 
 /// The same room, in which an unlit quad of 20 cm stands before the camera. The quad lights nothing, and is 10^5 times
@@ -90,7 +90,7 @@ TEST(RoughFrame, ALampInViewDoesNotHideTheRoom) {
       bright.unlit = true;
       scene.add_quad({2.5f, 2.5f, 3}, {2.7f, 2.5f, 3}, {2.7f, 2.7f, 3}, {2.5f, 2.7f, 3}, bright);
     }
-    lost[in_view] = rough_of(scene.frame()).path.lost_indirect;
+    lost[in_view] = rough_of(scene.frame()).path.missed_indirect.lone;
   }
   EXPECT_NEAR(lost[1], lost[0], 0.1 * lost[0]);
 }
@@ -104,7 +104,7 @@ TEST(RoughFrame, ASpotOfDirectLightDoesNotHideTheRoom) {
   scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
   scene.add_point_light({1.3f, 2.4f, 0.002f}, Rgb(1.0f));
   const RoughFrame rough = rough_of(scene.frame());
-  EXPECT_NEAR(std::sqrt(rough.missed.square), 1.0 / 3, 0.1);
+  EXPECT_NEAR(std::sqrt(rough.path.missed_indirect.square), 1.0 / 3, 0.1);
 }
 
 /// A dark room with a hole of 10 cm in its right wall, behind which a lamp on the wall lights a board. A path meets the
@@ -129,7 +129,7 @@ TEST(RoughFrame, AFewSamplesThatFindAllLightAreNoMeasurement) {
     across(4, a, b, b, 4, wall);
     across(5, 0, 4, 0, 4, wall);
     across(4.05f, 3, 3.5f, 1.5f, 2.5f, test::matte(Rgb(0.0f), Rgb(50.0f)));
-    const float unsure = float(rough_of(scene.frame()).unsure);
+    const float unsure = float(rough_of(scene.frame()).path.missed_indirect.uncertain);
     EXPECT_EQ(unsure > 0.9f, half < 0.1f) << half << " m: " << unsure;
   }
 }
@@ -203,7 +203,7 @@ TEST(RoughFrame, OfABoardAloneHasNoIndirectLight) {
   const RoughFrame rough = rough_of(scene.frame());
   EXPECT_EQ(rough.path.all, rough.path.other);
   EXPECT_EQ(rough.record_error, 0);
-  EXPECT_EQ(rough.missed.square, 0);
+  EXPECT_EQ(rough.path.missed_indirect.square, 0);
 }
 
 }  // namespace

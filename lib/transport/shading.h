@@ -1,4 +1,4 @@
-// lib/render/shading.h -- a surface point with the side that a ray sees and its Bsdf.
+// lib/transport/shading.h -- a surface point with the side that a ray sees and its Bsdf.
 #pragma once
 
 #include "lib/material/bsdf.h"

@@ -1,0 +1,42 @@
+// lib/light/sky_source.h -- the environment as one of the kinds of lights (light_sample.h).
+#pragma once
+
+#include <array>
+
+#include "lib/light/aim.h"
+#include "lib/light/environment_light.h"
+#include "lib/light/light_sample.h"
+#include "lib/light/light_tree.h"
+
+namespace tempolux {
+
+class SkyGuide;
+
+/// The environment around the scene sphere.
+struct SkySource {
+  const EnvironmentLight& map;
+  const Aim& aim;  ///< of its photons; knows the scene sphere
+
+  static constexpr bool emits() { return true; }
+  static constexpr bool distant() { return true; }
+  /// Not used: distant lights are not in the light tree.
+  static LightBounds bounds(const Box3&) { return {}; }
+  /// Flux [W] through the scene sphere's disc from all directions.
+  Rgbd flux() const { return map.integral() * aim.disc_area(); }
+  /// Draws a direction for a point by radiance, or from the guide's grid where it has one. u is in [0, 1) and was
+  /// stretched from u_float.x, which has 24 random bits; `probability` is that of choosing the environment. False if no
+  /// light comes from there.
+  bool sample(Vec3 point, Vec3 normal, const SkyGuide* guide, double probability, double u, Vec2 u_float,
+              LightSample& s) const;
+  /// pdf [1/sr] of a direction (unit), whose place is `place`, given that the environment is chosen.
+  double pdf_solid_angle(Vec3 point, Vec3 normal, const SkyGuide* guide, const EnvironmentLight::Place& place,
+                         Vec3 direction) const;
+  /// Emits a photon of a slot with this probability: u0 and u[1] give the direction, u[2] and u[3] the start.
+  void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
+};
+
+/// Sets the start of distant light along e.travel, by aim. `flux` [W] is that of a photon with a uniform start on the
+/// scene sphere's disc.
+void start_distant(const Aim& aim, double u, double v, Rgbd flux, PhotonEmission& e);
+
+}  // namespace tempolux
