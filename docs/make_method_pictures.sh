@@ -8,7 +8,7 @@ set -e
 info="$bin/tempolux-info" draw='python3 -B docs/draw.py'
 
 # A bright spot: where the photons of the high part are, and few rays a record without and with explicit samples.
-python3 -B tests/bench/spot_room.py "$work/spot.glb"
+python3 -B tests/support/spot_room.py "$work/spot.glb"
 "$bin/photon-trace" "$work/spot.glb" --photons 200k -o "$work/p.photons" -q
 "$bin/photon-trace" "$work/spot.glb" --photons 20k --kinds direct,indirect -o "$work/few.photons" -q
 "$bin/photonmap-split" "$work/few.photons" --cell 0.3 --low "$work/l.photons" --high "$work/h.photons" -q
@@ -29,7 +29,7 @@ done
 "$info" --sheet $out/split.png --columns 3 --tile 240 "$work/dots.png" "$work/rays.png" "$work/split.png"
 
 # Localised gathering: what follows from the standing scene (L_t), what is gathered for the frame (L_y), influence I, and the blend.
-python3 -B tests/bench/moving_room.py "$work/room.glb" > /dev/null
+python3 -B tests/support/moving_room.py "$work/room.glb" > /dev/null
 f="--frame 20" size="--size 320x180"
 "$bin/photon-trace" "$work/room.glb" $f --map static --photons 1M --kinds indirect -o "$work/s.photons" --paths "$work/s.paths" -q
 "$bin/photon-trace" "$work/room.glb" $f --map dynamic --static "$work/s.paths" -o "$work/d.photons" -q

@@ -54,20 +54,21 @@ SpecularHits::SpecularHits(const RenderScene& scene, const CameraView& view, std
       });
   if (pixels.empty() || count == 0) return;
   const double pixels_of_path = double(pixels.size()) / double(count);
-  const float widen = float(std::sqrt(std::max(1.0, pixels_of_path)));
   hits_ = parallel_found<HitPlace>(count, 64, [&](std::size_t i, std::vector<HitPlace>& found) {
     const PixelRandom random(seed, i, 0);
     const double at = double(i) + double(PathRandom(seed ^ 1, i).get1(0, Purpose::pixel));
     const std::size_t pixel = pixels[std::min(pixels.size() - 1, std::size_t(at * pixels_of_path))];
     follow(scene, view.ray(sample_of_pixel(int(pixel % width), int(pixel / width), random)), random, view.cone(),
-           Rgb(float(pixels_of_path)), widen, found);
+           pixels_of_path, found);
   });
   sort_into_cells();
 }
 
 /// Follows the events S of one camera path.
-void SpecularHits::follow(const RenderScene& scene, Ray ray, const PixelRandom& random, RayCone cone, Rgb weight,
-                          float widen, std::vector<HitPlace>& found) const {
+void SpecularHits::follow(const RenderScene& scene, const Ray& ray, const PixelRandom& random, RayCone cone,
+                          double pixels_of_path, std::vector<HitPlace>& found) const {
+  const Rgb weight{float(pixels_of_path)};
+  const float widen = float(std::sqrt(std::max(1.0, pixels_of_path)));
   SpecularChain chain(scene.tracer, ray, scene.camera_inside);
   while (chain.events() < kLongest && chain.meet()) {
     const std::uint32_t bounce = chain.events();

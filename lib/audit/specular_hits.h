@@ -47,7 +47,7 @@ class SpecularHits {
     std::uint64_t cell;
     std::uint32_t hit;
   };
-  void follow(const RenderScene& scene, Ray ray, const PixelRandom& random, RayCone cone, Rgb weight, float widen,
+  void follow(const RenderScene& scene, const Ray& ray, const PixelRandom& random, RayCone cone, double pixels_of_path,
               std::vector<HitPlace>& found) const;
   void sort_into_cells();
 

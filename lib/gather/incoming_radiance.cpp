@@ -233,23 +233,33 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       if (source) source->noise += from.weight * scale * stored.noise * remaining;
     } else {
       const Rgb kept = scale * (near ? 1.0f : remaining_share(met, point, from));
-      result = kept * scattered(met, point, from, kept, random, depth, to);
+      result = kept * scattered(met, point, from, kept, depth, to);
       if (source) source->partial = true;
     }
   }
   if (!specular || depth >= kDeepest) return result;
-  // The other lobes: one sampled direction, with Russian roulette on its weight.
+  return result + reflected_specular(met, *side, from, depth, to);
+}
+
+/// The part of reflected() by the lobes other than Lambert's: one sampled direction, with Russian roulette on its
+/// weight.
+Rgb IncomingRadiance::reflected_specular(const Met& met, const SeenSide& side, const Further& from, int depth,
+                                         const Gathered& to) const {
+  const Bsdf& bsdf = *met.bsdf;
+  const PathRandom random(from.key, std::uint64_t(depth));
+  RadianceSource* const source = to.source_of(from);
+  Rgb result{0.0f};
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
-  const Bsdf::Direction wo = bsdf.along(side->wo_local);
+  const Bsdf::Direction wo = bsdf.along(side.wo_local);
   const float choice = random.get1(2, Purpose::lobe);
   const bool sampled =
       bright_ && !(material.transmission > 0) && !bsdf.specular_is_delta() && !bsdf.draws_diffuse(wo, choice);
   if (sampled) {  // event S is drawn with the probability by which the light is divided
-    const BrightLight light = bright_->arriving({met.hit, side->normal, &bsdf, true, met.wo}, 1, random, to.counts);
+    const BrightLight light = bright_->arriving({met.hit, side.normal, &bsdf, true, met.wo}, 1, random, to.counts);
     result += Rgb(light.irradiance / double(1 - bsdf.fork_probability(wo)));
     if (source) source->partial = true;
   }
-  const Scattered event(bsdf, side->frame, wo, choice, random.get2(2, Purpose::scatter));
+  const Scattered event(bsdf, side.frame, wo, choice, random.get2(2, Purpose::scatter));
   const Bsdf::Sample& next = event.sample;
   const Vec3 travel = event.travel;
   if (next.diffuse || is_black(next.weight)) return result;
@@ -325,7 +335,8 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
 /// sample estimates it. If there are bright points, one explicit sample is added. If no point represents the hit, the
 /// continued ray finds all light except direct light.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
-                                const PathRandom& random, int depth, const Gathered& to) const {
+                                int depth, const Gathered& to) const {
+  const PathRandom random(from.key, std::uint64_t(depth));
   ++(point ? to.counts.near_hits : to.counts.unanswered);
   const SeenSide side(met.hit, met.wo);
   Rgb irradiance{0.0f};

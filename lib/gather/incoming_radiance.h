@@ -86,8 +86,10 @@ class IncomingRadiance {
                 const Gathered& to) const;
   Rgb radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
                               const Gathered& to) const;
-  Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
-                const PathRandom& random, int depth, const Gathered& to) const;
+  Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, int depth,
+                const Gathered& to) const;
+  Rgb reflected_specular(const Met& met, const struct SeenSide& side, const Further& from, int depth,
+                         const Gathered& to) const;
   Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, float sampled_lobe,
                     const PathRandom& random, GatherCounts& counts) const;
 

@@ -45,13 +45,11 @@ double Lights::distant_share(Vec3 point, Vec3 normal, From from, double& total) 
   return total > 0 ? share_of_distant(total, tree_.start(point, normal).sum) : 0;
 }
 
-/// u in [0, 1) chooses among the distant lights; the environment comes first.
-bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
-                            LightSample& s) const {
-  const double left = u * total;
+/// u_float.x / share in [0, 1) chooses among the distant lights; the environment comes first.
+bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, double total, LightSample& s) const {
+  const double left = double(u_float.x) / share * total;
   if (left < environment_weight_ || total <= environment_weight_)
-    return SkySource{*environment_, aim_}.sample(point, normal, guide_.get(), share * environment_weight_ / total,
-                                                 left / environment_weight_, u_float, s);
+    return sky().sample(point, normal, share * environment_weight_ / total, left / environment_weight_, u_float, s);
   return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_),
                     share * (1 - environment_weight_ / total), s);
 }
@@ -75,8 +73,8 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, L
 }
 
 /// Draws a point on the light of a slot that was chosen with this probability. `left` is the remainder of the number
-/// that chose the slot; with `joint` it replaces u.x.
-inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+/// that chose the slot; with draw.joint it replaces u.x.
+inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, const Draw& draw,
                                 LightSample& sample) const {
   if (slot >= triangles_.size())
     return with(slot,
@@ -87,7 +85,8 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
                 }) &&
            is_finite(sample.facing_irradiance);
   const TriangleLight& t = triangles_[slot];
-  if (joint) {
+  Vec2 u = draw.u;
+  if (draw.joint) {
     // u.x had 24 random bits. The choice of the slot used some of them; bits made from u.y are added in their places.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
     u.x = to_float(std::min(left + fill * step, 1.0));
@@ -103,27 +102,27 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.facing_irradiance);
 }
 
-bool Lights::sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
-                        LightSample& sample) const {
+bool Lights::sample_any(Vec3 point, Vec3 normal, const Draw& draw, From from, LightSample& sample) const {
   sample = {};
   const LightTree::Start start = tree_.start(point, normal);
   const double distant = distant_irradiance(normal, from),
                share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
-  if (u_choice < share) {
-    // Distant lights use the remainder of u_choice in place of u.x, even if u_choice and u.x are different numbers.
-    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) &&
+  if (draw.choice < share) {
+    // Distant lights use the remainder of the choice in place of u.x, even if the two are different numbers.
+    return sample_distant(point, normal, {draw.choice, draw.u.y}, share, distant, sample) &&
            is_finite(sample.facing_irradiance);
   }
-  return sample_tree(start, 1 - share, point, normal, to_float(stretch(u_choice, share, 1 - share)), u, joint, sample);
+  const Draw left{to_float(stretch(draw.choice, share, 1 - share)), draw.u, draw.joint};
+  return sample_tree(start, 1 - share, point, normal, left, sample);
 }
 
 /// Draws a sample of a light inside the scene; `probability` is the probability of choosing any of them.
-bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice,
-                         Vec2 u, bool joint, LightSample& sample) const {
+bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, const Draw& draw,
+                         LightSample& sample) const {
   if (tree_.empty()) return false;
   LightTree::Choice choice;
-  if (!tree_.choose(start, point, normal, u_choice, choice)) return false;
-  return sample_slot(tree_slot_[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
+  if (!tree_.choose(start, point, normal, draw.choice, choice)) return false;
+  return sample_slot(tree_slot_[choice.light], point, choice.probability * probability, choice.left, draw, sample);
 }
 
 bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const {
@@ -159,7 +158,7 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   if (!(environment_weight_ > 0)) return 0;
   double total = 0;
   const double share = distant_share(point, normal, from, total);
-  const double directed = SkySource{*environment_, aim_}.pdf_solid_angle(point, normal, guide_.get(), place, direction);
+  const double directed = sky().pdf_solid_angle(point, normal, place, direction);
   const float pdf = float(directed * share * environment_weight_ / total);
   return pdf < INFINITY ? pdf : 0;
 }

@@ -110,13 +110,13 @@ class Lights {
   /// then a point on the light with u. All numbers are in [0, 1). False if no light can reach the point. Lights below
   /// the surface of `normal` (unit) are excluded; a zero normal excludes none.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-    return sample_any(point, normal, u_choice, u, false, From::all, sample);
+    return sample_any(point, normal, {u_choice, u, false}, From::all, sample);
   }
   /// The same from two numbers. u.x chooses the light; its place inside the light's part of [0, 1), stretched to
   /// [0, 1), is the first coordinate on the light. Samples that are stratified over the square are stratified over
   /// every light.
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const {
-    return sample_any(point, normal, u.x, u, true, from, sample);
+    return sample_any(point, normal, {u.x, u, true}, from, sample);
   }
   /// pdf [1/sr] with which sample() at (point, normal) chooses the position `on_light` of a triangle; 0 if the triangle
   /// emits nothing towards the point. The triangle's own plane decides which side is seen, as in sample().
@@ -163,14 +163,20 @@ class Lights {
   const Aim& aim() const { return aim_; }
 
  private:
-  /// Both forms of sample(). `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
-  bool sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
-  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
-                   bool joint, LightSample& sample) const;
-  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+  /// Random numbers of a light sample. joint: `choice` is u.x, so the remainder of the choice replaces u.x.
+  struct Draw {
+    float choice;
+    Vec2 u;
+    bool joint;
+  };
+  /// Both forms of sample().
+  bool sample_any(Vec3 point, Vec3 normal, const Draw& draw, From from, LightSample& sample) const;
+  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, const Draw& draw,
                    LightSample& sample) const;
-  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
-                      LightSample& s) const;
+  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, const Draw& draw,
+                   LightSample& sample) const;
+  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, double total, LightSample& s) const;
+  SkySource sky() const { return {*environment_, aim_, guide_.get()}; }
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal, From from) const {

@@ -15,7 +15,8 @@ class SkyGuide;
 /// The environment around the scene sphere.
 struct SkySource {
   const EnvironmentLight& map;
-  const Aim& aim;  ///< of its photons; knows the scene sphere
+  const Aim& aim;                   ///< of its photons; knows the scene sphere
+  const SkyGuide* guide = nullptr;  ///< null: none
 
   static constexpr bool emits() { return true; }
   static constexpr bool distant() { return true; }
@@ -26,11 +27,9 @@ struct SkySource {
   /// Draws a direction for a point by radiance, or from the guide's grid where it has one. u is in [0, 1) and was
   /// stretched from u_float.x, which has 24 random bits; `probability` is that of choosing the environment. False if no
   /// light comes from there.
-  bool sample(Vec3 point, Vec3 normal, const SkyGuide* guide, double probability, double u, Vec2 u_float,
-              LightSample& s) const;
+  bool sample(Vec3 point, Vec3 normal, double probability, double u, Vec2 u_float, LightSample& s) const;
   /// pdf [1/sr] of a direction (unit), whose place is `place`, given that the environment is chosen.
-  double pdf_solid_angle(Vec3 point, Vec3 normal, const SkyGuide* guide, const EnvironmentLight::Place& place,
-                         Vec3 direction) const;
+  double pdf_solid_angle(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const;
   /// Emits a photon of a slot with this probability: u0 and u[1] give the direction, u[2] and u[3] the start.
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
 };

@@ -162,8 +162,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
     media_ = *media;
     media_->raise_majorants_to(kStepsPerCrossing / media->majorants().mean_chord());
   }
-  for (const PlacedLight& placed : tracer.frame().lights)
-    has_point_lights_ |= !placed.light.distant();
+  for (const PlacedLight& placed : tracer.frame().lights) has_point_lights_ |= !placed.light.distant();
   directions_ = options.store_volume && media_ && media_->directional();
   directions_ |= options.store_caustic && normal_maps_see_caustics(tracer.frame().materials);
   for (const Material& material : tracer.frame().materials) {
@@ -186,8 +185,8 @@ void PhotonTracer::find_solids_of_lights() {
   if (!around.any()) return;
   std::uint32_t last_surface = kNone;
   for (const EmissionSlot& slot : lights_.slots()) {
-    const bool placed = slot.kind == EmissionSlot::Kind::punctual &&
-                        !tracer_.frame().lights[slot.light].light.distant();
+    const bool placed =
+        slot.kind == EmissionSlot::Kind::punctual && !tracer_.frame().lights[slot.light].light.distant();
     const bool same = slot.surface != kNone && slot.surface == last_surface;
     last_surface = slot.surface;
     if (same) slot_inside_.push_back(slot_inside_.back());
@@ -451,28 +450,18 @@ void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uin
     record_direction(at.wi, batch);
 }
 
-/// Records a photon, then scatters or absorbs it. Returns false if its path ends there.
-bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
-  const SurfacePoint& point = at.point;
+/// Draws a photon's event at a surface, by the shading normal or the geometric normal.
+PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, const Draw& draw) const {
   const Bsdf& bsdf = at.bsdf;
-  const bool front = dot(point.normal_geometric, at.wi) > 0;
-  const bool solid = solid_[point.material];
-  Rgb flux = path.flux;
-  if (path.inside.any() || (solid && !front)) {
-    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, at.distance);
-    path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
-  }
-
-  store(path, at, flux, draw.bounce, batch);
   const PathRandom& random = path.random;
   // Without specular lobes there is no choice.
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;
-  Bsdf::Sample next;
-  Vec3 travel;
+  Event event;
+  Bsdf::Sample& next = event.next;
+  Vec3& travel = event.travel;
   // A path is aimed only once: a product of several factors of aim() would be very large for very rare paths.
   const bool aims =
-      !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
-  float aimed = 1;
+      !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(at.point.position);
   // True if the photon can be scattered by the shading normal and by the geometric normal. Each normal is then chosen
   // with probability 1/2, and the photon gets the weight 2.
   bool both = false;
@@ -486,7 +475,7 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
     if (!at.flat && !(at.wi_local.z > 0)) next.diffuse = true;
     if (next.diffuse && (!at.flat || aims)) {
       if (!at.flat) travel = Frame(at.normal_geometric).to_world(sample_hemisphere_cos(draw.u));
-      if (aims) aimed = aim(point.position, at.normal_geometric, random, draw.bounce, travel);
+      if (aims) event.aimed = aim(at.point.position, at.normal_geometric, random, draw.bounce, travel);
       next.weight = at.scatter_diffuse(bsdf, next, travel);
     } else if (!at.flat) {
       const float side = next.transmitted ? -1.0f : 1.0f;
@@ -495,6 +484,23 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
     }
   }
   if (both) next.weight *= 2;
+  return event;
+}
+
+/// Records a photon, then scatters or absorbs it. Returns false if its path ends there.
+bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
+  const SurfacePoint& point = at.point;
+  const bool front = dot(point.normal_geometric, at.wi) > 0;
+  const bool solid = solid_[point.material];
+  Rgb flux = path.flux;
+  if (path.inside.any() || (solid && !front)) {
+    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, at.distance);
+    path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
+  }
+
+  store(path, at, flux, draw.bounce, batch);
+  const PathRandom& random = path.random;
+  const auto [next, travel, aimed] = event_at(path, at, draw);
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
   const Rgb reflected = flux * next.weight;
   const float survival =

@@ -152,6 +152,13 @@ class PhotonTracer {
   struct Wave;
   struct Draw;
   struct Meeting;
+  /// An event at a surface: its sample, the direction after it, and the factor of aim().
+  struct Event {
+    Bsdf::Sample next;
+    Vec3 travel{};
+    float aimed = 1;
+  };
+  Event event_at(const Path& path, const Meeting& at, const Draw& draw) const;
   /// Number of paths that are followed together; their state fits into the first-level cache.
   static constexpr std::uint64_t kWave = 64;
   static_assert(kWave <= Lights::kMostEmitted);

@@ -439,12 +439,12 @@ void EyeTracer::follow(PathState state) const {
 
 }  // namespace
 
-PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
-                         const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort) {
+PathParts trace_eye_parts(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random,
+                          const KnownLight* known, RayCounts& counts, const PathEffort& effort) {
   PathParts parts;
   ++counts.camera;
   EyeTracer(scene, known, effort, counts, parts)
-      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, scene.camera_inside, {}});
+      .follow({random, &parts.own, eye.ray, eye.first, eye.cone, Rgb(1.0f), {}, scene.camera_inside, {}});
   return parts;
 }
 
@@ -452,7 +452,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
                       const KnownLight* known, RayCounts& counts, RayCone cone) {
   Hit first;
   scene.tracer.intersect(camera_ray, first);
-  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, effort_of(random.sample())).sum();
+  return trace_eye_parts(scene, {camera_ray, first, cone}, random, known, counts, effort_of(random.sample())).sum();
 }
 
 }  // namespace tempolux

@@ -216,9 +216,15 @@ struct RenderScene {
 /// Thread-safe if each thread has its own `counts`.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone = {});
-/// The same by parts, along a ray whose first hit is given (surface kNone: the ray meets no surface). MIS weights are
-/// those of one sample of each part for any `effort`, so the mean of each part over its samples has no bias.
-PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
-                         const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
+/// A camera ray with its pixel's cone and what it meets first (surface kNone: no surface).
+struct EyeRay {
+  Ray ray;
+  Hit first;
+  RayCone cone;
+};
+/// The same by parts. MIS weights are those of one sample of each part for any `effort`, so the mean of each part over
+/// its samples has no bias.
+PathParts trace_eye_parts(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random,
+                          const KnownLight* known, RayCounts& counts, const PathEffort& effort);
 
 }  // namespace tempolux

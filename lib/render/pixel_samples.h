@@ -158,7 +158,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
     Hit hit;
     scene.tracer.intersect(ray, hit);
     caustics.use_half(pass.half(i));
-    const PathParts parts = trace_eye_path(scene, ray, hit, random, known, counts, view.cone(), effort);
+    const PathParts parts = trace_eye_parts(scene, {ray, hit, view.cone()}, random, known, counts, effort);
     if (halves) {
       const bool single = pass.count.own == 1;
       halves->add(single ? halves->half[1][0].count < halves->half[0][0].count : pass.half(i), parts, effort);

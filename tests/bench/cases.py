@@ -1,11 +1,13 @@
 """The scenes that the chain is judged on: ours, those of open_scenes.py, those made by others; what each is rendered with."""
 import dataclasses
 import shutil
+import sys
 from pathlib import Path
 
-import daylight
-import open_scenes
-from furnish import Asset, bounds, looking
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import daylight  # noqa: E402
+import open_scenes  # noqa: E402
+from furnish import Asset, bounds, looking  # noqa: E402
 
 SKY_OF_SUN = ("--environment", "0.1,0.12,0.15")     # beside the sun of `-sun` scenes: an eighth of its light
 # Of a file by others what it is rendered with: frame, options of all tools, environment map below hdri.

@@ -26,6 +26,7 @@ from pathlib import Path
 here = Path(__file__).resolve()
 for folder in ("stress", "formats"):
     sys.path.insert(0, str(here.parents[1] / folder))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import exr  # noqa: E402
 import read_meshirrad as mesh  # noqa: E402
 import pixels  # noqa: E402

@@ -18,7 +18,8 @@ from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[n] / folder) for n, folder in ((1, "formats"), (2, "docs"))]
 sys.dont_write_bytecode = True
-import moving_room
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import moving_room  # noqa: E402
 from draw import read_png
 from exr_files import exr
 from read_irradcache import read_irradcache

@@ -11,7 +11,8 @@ import statistics
 import sys
 from pathlib import Path
 
-import cases
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import cases  # noqa: E402
 import pipeline
 import pixels
 from measure import Missing, Steps, figure, percent, quantity

@@ -18,7 +18,8 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
-import spot_room
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import spot_room  # noqa: E402
 
 EXPLICIT = 4  # explicit samples of a camera path (KnownLight::bright_samples)
 PAPER = (("Tawara et al. 2004, scene 1", "768", "21 min"), ("the same, split", "48 + 230", "9 min"), ("scene 2, split, a cache", "300 + 98", "10 min"))

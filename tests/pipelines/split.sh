@@ -12,7 +12,7 @@ run() {
   make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0 INDIRECT=records SIZE=48x27 PHOTONS=40k POINTS='--point-count 10k' \
     CACHE='--rays 1600 --error-bound 0.5' PIXELS='--spp 4 --pixel-error 0' CHANNELS=RGBA,layers "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
-python3 -B tests/bench/spot_room.py "$work/spot.glb" || bad 'no scene'
+python3 -B tests/support/spot_room.py "$work/spot.glb" || bad 'no scene'
 for split in auto off; do run SCENE="$work/spot.glb" SPLIT=$split OUT="$work/spot-$split"; done
 [ "$(planned "$work/spot-auto" split)" = true ] || bad 'a bright spot, and no split is planned'
 [ "$(planned "$work/spot-off" split)" = false ] || bad 'SPLIT=off, and one is planned'

@@ -13,7 +13,7 @@ cd "$scratch" || exit 1
 printf 'called_from_lib:%s\n' libembree3.so libtbb.so libOpenEXR libIlmThread > suppressions
 echo 'race:^std::__cxx11::basic_string' >> suppressions
 export TSAN_OPTIONS="suppressions=$scratch/suppressions ignore_noninstrumented_modules=1 halt_on_error=0 exitcode=66 log_path=$scratch/report"
-"${PYTHON:-python3}" -B "$here/../bench/open_scenes.py" . leaves &&
+"${PYTHON:-python3}" -B "$here/../support/open_scenes.py" . leaves &&
 "${PYTHON:-python3}" -B "$here/edit_gltf.py" "$here/../../pipelines/scenes/S2_cornell_moving.glb" room.glb mirror || exit 1
 . "$here/../support/chain.sh"
 of_photons='--photons 20k --kinds caustic,indirect' of_points='--point-count 2k' of_records='--rays 30 --size 48x27'

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A furnished room of 8 x 6 x 3 m, 200 000 triangles, a lamp under its ceiling, in which a ball of 0.5 m moves for 48 frames.
 
-    python3 tests/bench/moving_room.py room.glb [triangles] [lamp]
+    python3 tests/support/moving_room.py room.glb [triangles] [lamp]
 
 With `lamp` the ball stands and the lamp glides under the ceiling instead. What stands: floor, ceiling and four walls, three tables, two cupboards, six bumpy cushions. The ball glides over the floor past a table.
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """S3 with its lamp narrowed to a cone: the same flux through a spot of 0.2 rad, so that a small bright spot lights the room by reflection.
 
-    python3 tests/bench/spot_room.py spot.glb [ball]
+    python3 tests/support/spot_room.py spot.glb [ball]
 
 With `ball` the ball rises by 0.6 m in 48 frames; else nothing moves.
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A closed hall of 16 x 8 x 6 m with wavy sides, a lamp under its ceiling and a wavy ball that moves: a million triangles.
 
-    python3 tests/bench/wavy.py hall.glb [triangles]
+    python3 tests/support/wavy.py hall.glb [triangles]
 """
 import json
 import math

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Scenes that closed rooms of a few metres do not stand for: open grounds, a street, a thin wall, leaves, many lamps.
 
-    python3 tests/bench/open_scenes.py FOLDER [NAME...]    writes them as .glb, all or some; prints the options of each
+    python3 tests/support/open_scenes.py FOLDER [NAME...]    writes them as .glb, all or some; prints the options of each
 
 hut-R: a hut of 4 m with a door and a window on a ground that reaches R metres to each side, R = 5, 50, 500, 5000. Two
 cameras, `inside` and `outside`; with a sun (hut-R-sun.glb) or without (hut-R-sky.glb), under the sky of SKY.
