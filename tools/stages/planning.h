@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lib/plan/graph.h"
 #include "lib/plan/inputs.h"
+#include "lib/plan/plan_files.h"
 #include "tools/common/scene_input.h"
 
 namespace tempolux::tools {
@@ -16,7 +16,7 @@ namespace tempolux::tools {
 struct Planned {
   Plan plan;
   Graph graph;
-  std::string scene_name;
+  PlanContext context;
   std::vector<std::string> warnings;  ///< warnings about the scene
 };
 
@@ -33,7 +33,7 @@ class PlanFolder {
   /// for later plans.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
-  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
+  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish);
 
  private:
   std::string path_;

@@ -42,7 +42,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, 
     const double bytes = file->name.ends_with(".photons") ? photons
                          : records ? d.records_of(1 + double(std::ranges::count(file->words, ',')))
                                    : 1;
-    Runs& stage = runs[file->stage];
+    Runs& stage = runs[std::string(file->stage->name)];
     stage.count += 1;
     stage.work += bytes * (records ? rays : 1);
     stage.bytes += bytes;
@@ -56,7 +56,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, 
 std::vector<int> sampled_frames(const Planned& planned) {
   std::vector<int> frames{planned.plan.frames.front()};
   const auto warped = std::ranges::find_if(
-      planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage::walked.folder); });
+      planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage_in("walked").folder); });
   if (warped != planned.graph.pictures.end() && warped->first != frames.front()) frames.push_back(warped->first);
   return frames;
 }
@@ -109,12 +109,12 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
       d.together = 1;
     }
     planned.graph = planner.graph(planned.plan, less);
-    out.write(planned, planner.tool_hash(), "", "");
+    out.write(planned, planner.tool_hash(), "");
     fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
     for (const GraphFile& file : planned.graph.files) {
       std::vector<std::string> names{file.name};
       names.insert(names.end(), file.beside.begin(), file.beside.end());
-      json[kSamples[i]][file.stage].push_back(names);
+      json[kSamples[i]][file.stage->name].push_back(names);
     }
   }
   // If the wish sets --rays, the records of a sample have as many rays as those of the whole run.
