@@ -13,10 +13,9 @@ namespace tempolux {
 /// One stage of the pipeline, over the whole run.
 struct StageEstimate {
   std::string stage;
-  double runs = 0;    ///< processes
-  double cpu_s = 0;   ///< of each
-  double bytes = 0;   ///< of each file that it writes
-  double memory = 0;  ///< largest of each process, bytes
+  double runs = 0;   ///< processes
+  double cpu_s = 0;  ///< of each
+  double bytes = 0;  ///< of each file that it writes
 };
 
 /// What one command of a stage costs.

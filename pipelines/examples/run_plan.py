@@ -4,8 +4,8 @@
     make -f Makefile.example plan OUT=out        or: scene-plan room.glb --frames 0-47 -o out
     python3 pipelines/examples/run_plan.py out --jobs 4 --bin build/release/bin
 
-Each file is made as soon as its inputs are there. A file that is there is up to date: its name ends in a key of all that
-it is made from. At the end frames/F.exr are copies of the pictures. Written from formats/plan/plan.md only.
+Makes the files that lead to the pictures, each as soon as its inputs are there. A file that is there is up to date: its
+name ends in a key of all that it is made from. Written from formats/plan/plan.md only.
 """
 import argparse
 import json
@@ -17,52 +17,59 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from pathlib import Path
 
 
-def missing(out, entry):
-    """Those files of a command that are not there."""
-    return [name for name in (entry["file"], *entry.get("beside", ())) if not (out / name).exists()]
+def there(out, names):
+    return all((out / name).exists() for name in names)
+
+
+def needed(out, plan):
+    """The commands that lead to pictures which are not there."""
+    for entry in plan["files"]:
+        entry["makes"] = [entry["file"], *entry.get("beside", ())]
+    maker = {name: entry for entry in plan["files"] for name in entry["makes"]}
+    commands, names = {}, list(plan["pictures"].values())
+    while names:
+        entry = maker.get(name := names.pop()) or sys.exit(f"plan.json: no command makes {name}")
+        if entry["file"] in commands or there(out, entry["makes"]):
+            continue
+        if not entry["argv"]:
+            sys.exit(f"{name}: needs make: a walkthrough asks before it runs")
+        commands[entry["file"]] = entry
+        names += [name for name in entry["inputs"] if not name.startswith("state/")]   # scene-plan writes these
+    return list(commands.values())
 
 
 def run(out, programs, entry):
-    """Runs one command inside OUT. Returns what is wrong, or None."""
-    tool, *words = (os.fsencode(word) for word in entry["argv"])
-    said = os.environ | {"TEMPOLUX_SAID": "state/warnings"}     # warnings that scene-plan has given already
+    """Runs one command inside OUT. Returns what is wrong, in words; "": nothing."""
+    tool, *words = map(os.fsencode, entry["argv"])
+    said = os.environ | {"TEMPOLUX_SAID": "state/warnings"}     # warnings that scene-plan has given
     code = subprocess.run([os.path.join(os.fsencode(programs), tool), *words], cwd=out, env=said).returncode
-    lost = missing(out, entry)
-    return f"{entry['file']}: {entry['argv'][0]} ended with {code}{', without ' + lost[0] if lost else ''}" if code or lost else None
+    return "" if code == 0 and there(out, entry["makes"]) else f"{entry['file']}: {entry['argv'][0]} ended with {code}"
 
 
-def make_all(out, programs, jobs, entries):
-    """Runs commands, `jobs` at once, each after those that make its inputs. Returns what is wrong, in words."""
-    maker = {name: entry["file"] for entry in entries for name in (entry["file"], *entry.get("beside", ()))}
-    waits = {entry["file"]: {maker[name] for name in entry["inputs"] if name in maker} for entry in entries}
-    todo = {entry["file"]: entry for entry in entries if missing(out, entry)}
-    wrong, running = [], {}
+def make_all(out, programs, jobs, todo):
+    """Runs commands, `jobs` at once; after an error no further one."""
+    wrong, running = [], set()
     with ThreadPoolExecutor(jobs) as pool:
         while True:
-            for name in [] if wrong else [name for name in todo if not waits[name] & (todo.keys() | running.keys())]:
-                entry = todo.pop(name)
-                if not entry["argv"]:
-                    wrong.append(f"{name}: needs make: a walkthrough asks before it runs")
-                    continue
-                running[name] = pool.submit(run, out, programs, entry)
+            for entry in [entry for entry in todo if there(out, entry["inputs"]) and not wrong]:
+                todo.remove(entry)
+                running.add(pool.submit(run, out, programs, entry))
             if not running:
-                return wrong or [f"{name}: its inputs wait for each other" for name in todo]
-            wait(running.values(), return_when=FIRST_COMPLETED)
-            for name in [name for name, job in running.items() if job.done()]:
-                wrong += filter(None, [running.pop(name).result()])
+                return wrong or [f"{entry['file']}: not made: an input is missing" for entry in todo]
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            wrong += [text for text in (job.result() for job in done) if text]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path, help="the folder of plan.json")
     parser.add_argument("--jobs", type=int, default=1, help="commands at once [1]")
-    parser.add_argument("--bin", type=Path, default=Path("build/release/bin"), help="folder of the tools [build/release/bin]")
+    parser.add_argument("--bin", type=Path, default=Path("build/release/bin"), help="of the tools [build/release/bin]")
     args = parser.parse_args()
     plan = json.loads((args.out / "plan.json").read_text())
     if plan["format"] != "tempolux plan" or not plan["version"].startswith("2.") or "files" not in plan:
         sys.exit(f"{args.out}/plan.json: no plan of version 2.1")
-    wrong = make_all(args.out, args.bin.resolve(), args.jobs, plan["files"])
-    if wrong:
+    if wrong := make_all(args.out, args.bin.resolve(), args.jobs, needed(args.out, plan)):
         sys.exit("\n".join(wrong))
     for frame, picture in plan["pictures"].items():
         shutil.copyfile(args.out / picture, args.out / "frames" / f"{frame}.exr")

@@ -9,6 +9,8 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/json.h"
+#include "lib/core/json_file.h"
 #include "lib/core/module_folders.h"
 #include "lib/plan/decide.h"
 #include "lib/volume/majorants_file.h"
@@ -119,6 +121,16 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   return decided;
 }
 
+StageCosts PlanFolder::costs(int width, int height) const {
+  StageCosts costs = table_costs(width, height);
+  const std::string file = path_ + "/state/costs.json";
+  if (!fs::exists(file)) return costs;
+  const auto measured = read_json(file);
+  if (measured.at("size") == std::vector{width, height})
+    for (const auto& [stage, cost] : measured.at("stages").items()) costs[stage] = {cost.at(0), cost.at(1)};
+  return costs;
+}
+
 void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish) {
   for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
   for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
@@ -151,7 +163,8 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   tool.stats().phase("plan");
   Plan& plan = planned_.plan;
   planned_.context = {fs::absolute(scene).string(), tool.scene_words(), tool.common().camera,
-                      table_costs(wish.width, wish.height), tool.history_line()};
+                      folder ? folder->costs(wish.width, wish.height) : table_costs(wish.width, wish.height),
+                      tool.history_line()};
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
                    helper_frames(tool.common().frames, wish));

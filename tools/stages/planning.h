@@ -32,6 +32,9 @@ class PlanFolder {
   /// The decisions for a segment: those of an earlier plan with the same key, else those of `decide`, which are stored
   /// for later plans.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
+  /// Costs of a command of each stage: as `make estimate` has measured them for pictures of this size, else those of
+  /// the table of stages.
+  StageCosts costs(int width, int height) const;
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
   void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish);
 

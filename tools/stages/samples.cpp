@@ -64,6 +64,7 @@ std::vector<int> sampled_frames(const Planned& planned) {
 /// Mean cost of one file of a stage in a sample.
 struct Cost {
   double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
+  double memory = 0;  ///< largest of its processes, bytes
 };
 
 /// `files`: names of the files in `folder` that each command of the stage has written. Empty if one has no statistics.
@@ -77,14 +78,16 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
       if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
+    sum.memory = std::max(sum.memory, json.at("peak_memory_bytes").get<double>());
     sum.work_cpu_s += in_work;
     sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
     for (const std::string& name : names)
       if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
   const double count = double(files.size());
-  return count == 0 ? std::nullopt
-                    : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count});
+  return count == 0
+             ? std::nullopt
+             : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count, sum.memory});
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish) {
   const Planned& whole = planner.planned();
   const double large = std::min(0.5, kWidth / wish.width);
-  Json json = {{"scales", {large / 2, large}}};
+  Json json = {{"scales", {large / 2, large}}, {"size", {wish.width, wish.height}}};
   PlanFolder out(folder);
   for (std::size_t i = 0; i < kSamples.size(); ++i) {
     const double scale = json["scales"][i];
@@ -129,6 +132,7 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
     throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
   const Json json = read_json(folder + "/samples.json");
   std::vector<StageEstimate> estimates;
+  Json costs = {{"size", json.at("size")}};
   for (const StageInfo& stage : kStages) {
     const std::string name(stage.name);
     if (!json.at("runs").contains(name)) continue;
@@ -143,7 +147,10 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
     };
     estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s),
                          runs[2] * whole(a->bytes, b->bytes)});
+    costs["stages"][std::string(stage.folder)] = {estimates.back().cpu_s,
+                                                  std::max(b->memory, whole(a->memory, b->memory))};
   }
+  std::ofstream(folder + "/costs.json") << costs;
   return estimates;
 }
 
