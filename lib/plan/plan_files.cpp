@@ -140,7 +140,8 @@ std::string all_of(const std::vector<std::string>& names) {
 /// The options that name what a command writes: its files, and its statistics.
 std::string outputs_of(const StageInfo& stage, const std::string& stem) {
   std::string text;
-  for (const char c : stage.outputs) text += c == '@' ? stem : std::string(1, c);
+  for (const char c : stage.outputs)
+    text += c == '@' ? stem : c == '%' ? stem + words_of(stage.extensions).front() : std::string(1, c);
   return text;
 }
 

@@ -28,12 +28,14 @@ struct StageInfo {
   std::string_view name;     ///< as in plan.json
   std::string_view command;  ///< the program that runs, and its first words
   Sees sees;
-  /// Options that name what the command writes; @ stands for FOLDER/FRAMES-KEY. "": pipelines/stages.mk has the rule
+  /// Options that name what the command writes. @ stands for FOLDER/FRAMES-KEY, % for the first file. "":
+  /// pipelines/stages.mk has the rule.
   std::string_view outputs;
   std::string_view extensions;  ///< of its files, separated by blanks; later stages read the first
   Part part;
   std::string_view words;  ///< for people
-  /// Cost of one command for the demo at 640x360: CPU seconds, and the largest memory in MB (`make estimate`).
+  /// Cost of one command for the demo at 640x360, of smoke for a room of 1 m: CPU seconds, and the largest memory in
+  /// MB. What `make estimate` measures replaces it.
   double cpu_s, memory_mb;
   /// Phases of its statistics whose time grows with the work, separated by commas.
   std::string_view work;
@@ -42,51 +44,53 @@ struct StageInfo {
   bool makes_pictures() const { return part == Part::frames && extensions == ".exr"; }
 };
 
+inline constexpr std::string_view kUsual = "-o % --stats @.json";
+inline constexpr std::string_view kTracing = "trace,commit", kPlacing = "read photons,points,write",
+                                  kRendering = "render,data channels,write";
+
 /// All stages, in the order in which they run.
 inline constexpr auto kStages = std::to_array<StageInfo>({
     {"stands", "photon-trace --map static", "photon-trace", Sees::drawn, "-o @.photons --paths @.paths --stats @.json",
-     ".photons .paths", Part::photons, "photons of the static scene", 1, 100, "trace,commit"},
-    {"photons", "photon-trace", "photon-trace", Sees::drawn, "-o @.photons --stats @.json", ".photons", Part::photons,
-     "photons", 1, 100, "trace,commit"},
-    {"moved", "photon-trace --map dynamic", "photon-trace", Sees::drawn, "-o @.photons --stats @.json", ".photons",
-     Part::photons, "photons that movers change", 0.2, 100, "trace,commit"},
-    {"refined", "photon-trace --refine", "photon-trace", Sees::drawn, "-o @.photons --stats @.json", ".photons",
-     Part::photons, "more photons where smoke is noisy", 0.2, 100, "trace,commit"},
-    {"stands_points", "irradcache-build points --map static", "irradcache-build points", Sees::drawn,
-     "-o @.irradpoints --stats @.json", ".irradpoints", Part::points, "light on static surfaces", 1, 100,
-     "read photons,points,write"},
-    {"points", "irradcache-build points", "irradcache-build points", Sees::drawn, "-o @.irradpoints --stats @.json",
-     ".irradpoints", Part::points, "light on surfaces", 1, 100, "read photons,points,write"},
+     ".photons .paths", Part::photons, "photons of the static scene", 1, 23, kTracing},
+    {"photons", "photon-trace", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons, "photons", 1, 23,
+     kTracing},
+    {"moved", "photon-trace --map dynamic", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,
+     "photons that movers change", 0.1, 22, kTracing},
+    {"refined", "photon-trace --refine", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,
+     "more photons where smoke is noisy", 0.4, 17, kTracing},
+    {"stands_points", "irradcache-build points --map static", "irradcache-build points", Sees::drawn, kUsual,
+     ".irradpoints", Part::points, "light on static surfaces", 1.1, 84, kPlacing},
+    {"points", "irradcache-build points", "irradcache-build points", Sees::drawn, kUsual, ".irradpoints", Part::points,
+     "light on surfaces", 0.7, 87, kPlacing},
     {"split", "photonmap-split", "photonmap-split", Sees::files,
      "--low @.low.irradpoints --high @.high.irradpoints --stats @.json", ".low.irradpoints .high.irradpoints",
-     Part::points, "bright points apart", 0.2, 100, "split"},
-    {"counts", "st-filter mesh --counts", "st-filter mesh", Sees::scene, "-o @.meshirrad --stats @.json", ".meshirrad",
-     Part::cache, "photons counted", 0.2, 100, "count,write"},
-    {"windows", "gather-temporal density", "gather-temporal density", Sees::scene, "-o @.meshirrad --stats @.json",
-     ".meshirrad", Part::cache, "light from photons of many frames", 0.2, 100, "read counts,windows,filter,write"},
-    {"stands_cache", "irradcache-build records --map static", "irradcache-build records", Sees::camera,
-     "-o @.irradcache --stats @.json", ".irradcache", Part::cache, "indirect light on static surfaces", 16, 100,
-     "records"},
-    {"cache", "irradcache-build records", "irradcache-build records", Sees::camera, "-o @.irradcache --stats @.json",
-     ".irradcache", Part::cache, "indirect light", 5, 100, "records"},
+     Part::points, "bright points apart", 0.1, 23, "split"},
+    {"counts", "st-filter mesh --counts", "st-filter mesh", Sees::scene, kUsual, ".meshirrad", Part::cache,
+     "photons counted", 0.1, 72, "count,write"},
+    {"windows", "gather-temporal density", "gather-temporal density", Sees::scene, kUsual, ".meshirrad", Part::cache,
+     "light from photons of many frames", 2.2, 221, "read counts,windows,filter,write"},
+    {"stands_cache", "irradcache-build records --map static", "irradcache-build records", Sees::camera, kUsual,
+     ".irradcache", Part::cache, "indirect light on static surfaces", 13, 66, "records"},
+    {"cache", "irradcache-build records", "irradcache-build records", Sees::camera, kUsual, ".irradcache", Part::cache,
+     "indirect light", 3.4, 92, "records"},
     {"kept", "gather-temporal final", "gather-temporal final", Sees::camera,
      "-o @.radsamples --cache @.irradcache --stats @.json", ".irradcache .radsamples", Part::cache,
-     "indirect light, kept over time", 5, 100, "records"},
-    {"keys", "frame-render (keys)", "frame-render", Sees::camera, "-o @.exr --stats @.json", ".exr", Part::frames,
-     "pixels of a key frame", 7, 100, "render,data channels,write"},
-    {"walk", "ibr-warp", "ibr-warp", Sees::camera, "", ".done", Part::frames, "distance of keys", 0.2, 100, "warp"},
-    {"walked", "frame-render --mask", "frame-render", Sees::camera, "", ".exr", Part::frames, "warped from keys", 7,
-     100, "render"},
-    {"raw", "frame-render (raw)", "frame-render", Sees::camera, "-o @.exr --stats @.json", ".exr", Part::frames,
-     "pixels", 7, 100, "render,data channels,write"},
-    {"filtered", "st-filter", "st-filter", Sees::files, "-o @.exr --stats @.json", ".exr", Part::frames, "noise filter",
-     1, 100, "filter"},
-    {"pictures", "frame-render", "frame-render", Sees::camera, "-o @.exr --stats @.json", ".exr", Part::frames,
-     "pixels", 7, 100, "render,data channels,write"},
-    {"smoky", "volume-compose", "volume-compose", Sees::camera, "-o @.exr --stats @.json", ".exr", Part::frames,
-     "smoke", 1, 100, "march"},
-    {"path", "frame-render --integrator path", "frame-render", Sees::camera, "-o @.exr --stats @.json",
-     ".exr _a.exr _b.exr", Part::report, "path-traced reference", 60, 100, "render"},
+     "indirect light, kept over time", 6.4, 100, "records"},
+    {"keys", "frame-render (keys)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels of a key frame",
+     7.2, 210, kRendering},
+    {"walk", "ibr-warp", "ibr-warp", Sees::camera, "", ".done", Part::frames, "distance of keys", 0.2, 210, "warp"},
+    {"walked", "frame-render --mask", "frame-render", Sees::camera, "", ".exr", Part::frames, "warped from keys", 7.2,
+     210, "render"},
+    {"raw", "frame-render (raw)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels", 8.3, 329,
+     kRendering},
+    {"filtered", "st-filter", "st-filter", Sees::files, kUsual, ".exr", Part::frames, "noise filter", 0.8, 248,
+     "filter"},
+    {"pictures", "frame-render", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels", 8.9, 183,
+     kRendering},
+    {"smoky", "volume-compose", "volume-compose", Sees::camera, kUsual, ".exr", Part::frames, "smoke", 2.8, 44,
+     "march"},
+    {"path", "frame-render --integrator path", "frame-render", Sees::camera, kUsual, ".exr _a.exr _b.exr", Part::report,
+     "path-traced reference", 60, 210, "render"},
     {"error", "aqm-compare", "aqm-compare", Sees::files, "--json @.json --quiet", ".json", Part::report, "comparison",
      0.2, 100, "compare"},
 });

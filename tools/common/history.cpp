@@ -80,9 +80,13 @@ std::vector<std::string> Tool::scene_words() const {
   std::vector<std::string> words;
   for (const CLI::Option* option : std::as_const(state_->app).get_options()) {
     if (!state_->of_scene.contains(option) || option->count() == 0) continue;
-    if (option->get_expected_max() == 0) words.push_back(option_name(*option));
+    const std::string name = option_name(*option);
+    if (option->get_expected_max() == 0) words.push_back(name);
     else
-      for (const std::string& value : option->results()) words.push_back(option_name(*option) + "=" + value);
+      for (const std::string& value : option->results()) {
+        const bool file = name == "--volume" ? value != "none" : name == "--environment" && !is_color(value);
+        words.push_back(name + "=" + (file ? std::filesystem::absolute(value).string() : value));
+      }
   }
   return words;
 }
