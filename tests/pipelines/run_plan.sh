@@ -57,9 +57,9 @@ as_expected() { digests "$out" 2> /dev/null | diff "$work/expected" - > "$work/d
 edited '' && as_expected || bad "the whole plan, once more: $(cat "$work/said" "$work/differences")"
 edited 'del files[0]' && bad 'a plan without the first file is accepted'
 grep -q 'no command makes stands/' "$work/said" || bad "a plan without the first file: $(cat "$work/said")"
-edited 'files[-1]["inputs"] += ["raw/none.exr"]' && bad 'an input that no command makes is accepted'
+edited 'files[0]["inputs"] += ["raw/none.exr"]' && bad 'an input that no command makes is accepted'
 for word in --map --previous --rays --channels; do
-  edited "e = [e for e in files if '$word' in e['argv']][-1]; i = e['argv'].index('$word'); del e['argv'][i:i + 2]" &&
+  edited "e = [e for e in files if '$word' in e['argv']][0]; i = e['argv'].index('$word'); del e['argv'][i:i + 2]" &&
     as_expected && bad "without $word the files are the same"
 done
 [ $failed = 0 ] && echo ok
