@@ -103,7 +103,8 @@ end() {
   [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' plan.mk
     then audit='not audited, too few of the tested paths bring light'
     else audit='not audited, as no preview is'; fi
-  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
+  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk |
+    grep -v "$(stages | sed -n 's|^\([a-z_]*\) report .*|^\1/|p')" |
     awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
       -v seen="$(measured)" -v asked="$asked" -v ways="$(ways)" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
