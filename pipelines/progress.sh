@@ -7,8 +7,8 @@
 #     progress.sh failed GOAL  after a make that failed: what was made, which file was not and why
 #
 # The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
-# WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s);
-# FAILED, a file with a line for each command that has not made its file (made.sh).
+# WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the first one began (date
+# +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
 clock() {
   if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
   else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
@@ -16,7 +16,8 @@ clock() {
 
 # FOLDER PART CPU_SECONDS WORDS of each stage, as plan.json has them.
 stages() {
-  awk -F '"' '$2 == "segments" { exit } $2 == "folder" { folder = $4 } $2 == "part" { part = $4 } $2 == "words" { words = $4 }
+  awk -F '"' '$2 == "segments" { exit } $2 == "folder" { folder = $4 } $2 == "part" { part = $4 }
+    $2 == "words" { words = $4 }
     $2 == "cpu_s" { gsub(/[: ,]/, "", $3); print folder, part, $3, words }' plan.json
 }
 

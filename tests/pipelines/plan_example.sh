@@ -19,7 +19,8 @@ page, out = open(sys.argv[1]).read(), sys.argv[2]
 plan = json.load(open(f"{out}/plan.json"))
 line = next(line for line in open(f"{out}/plan.json") if line.startswith('  {"file": "cache/0000-'))
 entry = re.sub(r'"/[^"]*/pipelines/', '"/home/me/tempolux/pipelines/', line.strip().rstrip(","))
-rows = "".join(f"| {s['folder']} | {s['extensions'].replace(' ', ', ')} | {s['stage']} | {s['tool']} | {s['words']} |\n" for s in plan["stages"])
+rows = "".join(f"| {s['folder']} | {s['extensions'].replace(' ', ', ')} | {s['stage']} | {s['tool']} | {s['words']} |\n"
+               for s in plan["stages"])
 for start, text, end in (("```make\n", open(f"{out}/plan.mk").read(), "```\n"), ("```text\n", entry + "\n", "```\n"),
                          ("| folder | files | stage | program | what it makes |\n|---|---|---|---|---|\n", rows, "\n")):
     before, found, rest = page.partition(start)
@@ -29,7 +30,8 @@ sys.stdout.write(page)
 END
 if [ "$write" = --write ]; then cat page > "$top/$page"; exit; fi
 keyless < "$top/$page" > expected
-keyless < page | diff -u expected - || { echo "FAILED: $page has something else; plan_example.sh BIN --write corrects it"; exit 1; }
+keyless < page | diff -u expected - ||
+  { echo "FAILED: $page has something else; plan_example.sh BIN --write corrects it"; exit 1; }
 
 ls -lR --time-style=full-iso "$folder" > before
 eval "$bin/$command --quiet" || exit 1
