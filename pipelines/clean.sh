@@ -5,11 +5,10 @@ for preset in release debug asan tsan no-oiio fuzz; do
 done
 rmdir "$TOP/build" 2> /dev/null
 cd "$OUT" 2> /dev/null || exit 0
-[ -f plan.mk ] || exit 0
-ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|planned.json|warnings|files[.0-9]*'
+[ -f plan.mk ] && [ -f plan.json ] || exit 0
+ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|planned.json|costs.json|warnings|files[.0-9]*'
 ours="$ours|.*[.](csv|md|html|svg|png|gp)"
-for folder in state shown stands photons moved refined stands_points points split counts windows stands_cache \
-  cache kept keys walk walked raw filtered pictures smoky path error report; do
+for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p' plan.json); do   # of all stages
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
   rm -f "$folder/.lock" "$folder/.makes" "$folder"/.*.tmp.*

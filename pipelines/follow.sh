@@ -1,8 +1,9 @@
 #!/bin/sh
 # follow.sh -- passes a finished picture on. stages.mk runs it inside OUT.
 #
-#     follow.sh next FILE      makes at once what now has all its inputs: filtered pictures, pictures with smoke,
-#                              frames, previews. By itself make would first render the whole range.
+#     follow.sh made GOAL FILE RAW...  removes raw pictures as below; if the goal is demo, makes at once what now has
+#                              all its inputs: filtered pictures, pictures with smoke, frames, previews. By itself
+#                              make would first render the whole range.
 #     follow.sh read RAW...    removes raw pictures that all their filtered pictures have read
 #     follow.sh was_read RAW   true if all filtered pictures that read it are there: another make may have removed it
 #
@@ -15,7 +16,8 @@ there() { [ -e "$1" ] || case " $goals " in *" $1 "*) ;; *) return 1;; esac; }
 # Lines of the plan for files that are made from $1, or from files of an earlier line.
 waiting() {
   awk -v file="$1" 'BEGIN { reached[file] }
-    /^(filtered|smoky|shown)\// && $2 == "|" {
+    $1 == "pictures" { for (i = 3; i <= NF; ++i) follows[$i]; follows["shown"] }
+    $2 == "|" && substr($1, 1, index($1, "/") - 1) in follows {
       for (i = 3; i <= NF; ++i) if ($i in reached) { sub(/:$/, "", $1); reached[$1]; print; break }
     }' "$PLAN"
 }
@@ -61,8 +63,10 @@ was_read() {
 }
 
 case $1 in
-  next) next "$2";;
+  made) goal=$2 made=$3; shift 3
+        [ $# = 0 ] || read_by_all "$@"
+        [ "$goal" != demo ] || next "$made";;
   read) shift; read_by_all "$@";;
   was_read) was_read "$2";;
-  *) echo "follow.sh: '$1' is none of next, read, was_read" >&2; exit 2;;
+  *) echo "follow.sh: '$1' is none of made, read, was_read" >&2; exit 2;;
 esac

@@ -7,33 +7,24 @@
 #     progress.sh failed GOAL  after a make that failed: what was made, which file was not and why
 #
 # The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
-# WEIGHT, their estimated cost in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s);
-# FAILED, a file with a line for each command that has not made its file (made.sh).
+# WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the first one began (date
+# +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
 clock() {
   if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
   else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
 }
 
-stage() {   # a file inside OUT in words
-  case $1 in
-    photons) echo photons;; stands) echo 'photons of the static scene';; moved) echo 'photons that movers change';;
-    refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';;
-    stands_points) echo 'light on static surfaces';;
-    split) echo 'bright points apart';; cache) echo 'indirect light';;
-    stands_cache) echo 'indirect light on static surfaces';; kept) echo 'indirect light, kept over time';;
-    counts) echo 'photons counted';;
-    windows) echo 'light from photons of many frames';; pictures | raw) echo pixels;; filtered) echo 'noise filter';;
-    smoky) echo smoke;; keys) echo 'pixels of a key frame';; walk) echo 'distance of keys';;
-    walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
-  esac
+# FOLDER PART CPU_SECONDS WORDS of each stage, as plan.json has them.
+stages() {
+  awk -F '"' '$2 == "segments" { exit } $2 == "folder" { folder = $4 } $2 == "part" { part = $4 }
+    $2 == "words" { words = $4 }
+    $2 == "cpu_s" { gsub(/[: ,]/, "", $3); print folder, part, $3, words }' plan.json
 }
 
-# Relative costs of the commands for the file names on standard input: CPU seconds for a frame of the demo.
+# Estimated CPU seconds of the commands for the file names on standard input.
 weigh() {
-  awk -F / 'BEGIN { w["path"] = 60; w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7
-                    w["cache"] = w["kept"] = 5; w["photons"] = w["stands"] = w["points"] = w["stands_points"] = 1
-                    w["filtered"] = w["smoky"] = 1 }
-            { sum += $1 in w ? w[$1] : .2 } END { printf "%.1f", sum }'
+  { stages; echo; cat; } | awk -F '[ /]' '!NF { files = 1 } !files { cost[$1] = $3 } files { sum += cost[$1] }
+    END { printf "%.1f", sum }'
 }
 
 say() {
@@ -52,20 +43,22 @@ say() {
 in_words() {   # a file inside OUT, by the frame that was asked for
   name=${1##*/} folder=${1%/*}
   frame=${name%%[-.]*}
+  words=$(stages | sed -n "s/^$folder //p")   # PART CPU_SECONDS WORDS
+  part=${words%% *} words=${words#* * }
   case $frame in
     *[!0-9+]*) echo "$folder"; return;;
-    *+*) echo "frames $(number "${frame%+*}") to $(number "${frame#*+}"), $(stage "$folder")"; return;;
+    *+*) echo "frames $(number "${frame%+*}") to $(number "${frame#*+}"), $words"; return;;
   esac
   # A frame that looks the same was asked for, or frames that share its light.
   if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then
     alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" plan.mk | head -1)
-    case $alike,$folder in
+    case $alike,$part in
       ?*,*) frame=$alike;;
-      ,pictures | ,raw | ,filtered | ,smoky | ,keys | ,walked | ,path | ,error) ;;   # a neighbour, a key
-      *) stage "$folder"; return;;
+      ,frames | ,report) ;;   # a neighbour, a key
+      *) echo "$words"; return;;
     esac
   fi
-  echo "frame $(number "$frame"), $(stage "$folder")"
+  echo "frame $(number "$frame"), $words"
 }
 
 number() { n_=${1#"${1%%[!0]*}"}; echo "${n_:-0}"; }   # 0012 -> 12
@@ -111,7 +104,8 @@ end() {
   [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' plan.mk
     then audit='not audited, too few of the tested paths bring light'
     else audit='not audited, as no preview is'; fi
-  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
+  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk |
+    grep -v "$(stages | sed -n 's|^\([a-z_]*\) report .*|^\1/|p')" |
     awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
       -v seen="$(measured)" -v asked="$asked" -v ways="$(ways)" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }

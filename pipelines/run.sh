@@ -60,7 +60,9 @@ makes() {   # runs in a subshell; after an error all that does not need the lost
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
   ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
-  "$BIN/scene-plan" --estimate "$aside"
+  "$BIN/scene-plan" --estimate "$aside" || exit
+  # A plan in OUT says from now on what its commands cost.
+  [ ! -f "$OUT/state/inputs" ] || { cp "$aside/costs.json" "$OUT/state" && rm "$OUT/state/inputs"; }
 }
 if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
 if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which is removed
@@ -99,7 +101,7 @@ PROGRESS=$aside/progress BEGAN=$(date +%s)
 (MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n -s) > "$aside/commands" 2> /dev/null ||
   echo "$goal" >> "$aside/commands"
 sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' "$aside/commands" > "$PROGRESS"
-TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
+TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(cd "$OUT" && sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"
 export TOTAL WEIGHT PROGRESS BEGAN
 [ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)

@@ -37,7 +37,7 @@ endforeach()
 add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 
 # Stages together, run by make at the top of the tree.
-foreach(script rerun make_asks plan_example plan_refuses content_camera drop_kind environment
+foreach(script rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
                scenes leaving_out walkthrough filter dynamic temporal preview split smoke own_scene)
   add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

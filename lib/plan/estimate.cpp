@@ -23,6 +23,17 @@ std::string time_text(double seconds) {
 
 }  // namespace
 
+StageCosts table_costs(int width, int height) {
+  const double pixels = double(width) * height / (640 * 360);
+  StageCosts costs;
+  for (const StageInfo& stage : kStages) {
+    const bool draws = stage.part != Part::photons && stage.part != Part::points;
+    costs[std::string(stage.folder)] = {stage.cpu_s * (draws ? pixels : 1),
+                                        stage.memory_mb * 1e6 * (draws ? std::max(1.0, pixels) : 1)};
+  }
+  return costs;
+}
+
 double power_law(double x1, double y1, double x2, double y2, double x) {
   if (y2 <= 0) return 0;
   const double exponent = y1 > 0 ? std::clamp(std::log(y2 / y1) / std::log(x2 / x1), 0.0, 2.0) : 1.0;

@@ -1,8 +1,12 @@
 // lib/plan/estimate.h -- estimates the cost of a run.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "lib/plan/stages.h"
 
 namespace tempolux {
 
@@ -13,6 +17,15 @@ struct StageEstimate {
   double cpu_s = 0;  ///< of each
   double bytes = 0;  ///< of each file that it writes
 };
+
+/// What one command of a stage costs.
+struct StageCost {
+  double cpu_s = 0, memory = 0;  ///< CPU seconds; bytes
+};
+using StageCosts = std::map<std::string, StageCost, std::less<>>;  ///< by StageInfo::folder
+
+/// The costs in the table of stages, for pictures of this size: what is said before anything is measured.
+StageCosts table_costs(int width, int height);
 
 /// y2 (x / x2)^k: the power law through (x1, y1) and (x2, y2), 0 < x1 < x2, at x. It extrapolates work y measured at
 /// picture widths x. The exponent k is clamped to [0, 2]; it is 1 if y1 is 0. Returns 0 if y2 is 0.

@@ -30,12 +30,12 @@ void add_report(GraphBuilder& g, int frame) {
                    std::to_string(g.wish.reference_samples) + " --channels RGBA",
                {},
                g.state(shown).light + g.cameras({shown})};
-  const std::string reference = g.add(stage::reference, shown, path, {"_a.exr", "_b.exr"});
+  const std::string reference = g.add(stage_in("path"), shown, path);
   Command compare;
   compare.file("", picture_name);
   compare.inputs.push_back(reference);
   compare.option("--reference-halves " + beside(reference, "_a.exr") + " " + beside(reference, "_b.exr"));
-  g.graph.errors[frame] = g.add(stage::error, shown, compare);
+  g.graph.errors[frame] = g.add(stage_in("error"), shown, compare);
   std::set<std::string> seen;
   collect_stats(g, picture_name, seen, g.graph.spent[g.graph.errors[frame]]);
 }
@@ -53,7 +53,7 @@ void remove_when_read(GraphBuilder& g) {
   for (const GraphFile& file : g.graph.files)
     for (const std::string& input : file.inputs) ++readers[input];
   for (GraphFile& file : g.graph.files) {
-    const std::string first_part = std::string(stage::raw.folder) + "/";
+    const std::string first_part = std::string(stage_in("raw").folder) + "/";
     if (!file.name.starts_with(first_part)) continue;
     file.passing = readers[file.name] == windows_around(g, std::stoi(file.name.substr(first_part.size())));
   }
@@ -67,10 +67,15 @@ std::string joined(const std::vector<int>& frames) {
   return text;
 }
 
-bool has_word(const std::string& words, const std::string& word) {
-  std::istringstream stream(words);
+std::vector<std::string> words_of(std::string_view text) {
+  std::istringstream stream{std::string(text)};
   using Words = std::istream_iterator<std::string>;
-  return std::find(Words(stream), Words(), word) != Words();
+  return {Words(stream), Words()};
+}
+
+bool has_word(const std::string& words, const std::string& word) {
+  const std::vector<std::string> all = words_of(words);
+  return std::ranges::find(all, word) != all.end();
 }
 
 bool has_channel(const std::string& channels, const std::string& name) {
@@ -96,21 +101,20 @@ std::string GraphBuilder::cameras(const std::vector<int>& frames) const {
   return hasher.hex();
 }
 
-std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames, const Command& command,
-                              const std::vector<std::string>& beside_extensions) {
-  const std::string key = key_of(
-      hash_of_texts({stage.name, tool_hash(std::string(stage.tool)), command.words, command.content, wish.common}));
-  const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key;
-  GraphFile file{stem + std::string(stage.extension), {},    std::string(stage.name),
-                 command.words + command.state_words, false, command.inputs};
-  for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
-  if (!graph.find(file.name)) graph.add(file);
-  return file.name;
+std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames, const Command& command) {
+  const std::string key =
+      key_of(hash_of_texts({stage.name, stage.command, stage.outputs, tool_hash(std::string(stage.tool())),
+                            command.words, command.content, wish.common}));
+  std::vector<std::string> made = words_of(stage.extensions);
+  for (std::string& name : made) name.insert(0, std::string(stage.folder) + "/" + frames + "-" + key);
+  const std::string first = made.front();
+  made.erase(made.begin());
+  if (!graph.find(first)) graph.add({first, made, &stage, command.words + command.state_words, false, command.inputs});
+  return first;
 }
 
-std::string GraphBuilder::add(const StageInfo& stage, int frame, const Command& command,
-                              const std::vector<std::string>& beside_extensions) {
-  return add(stage, frame_digits(frame), command, beside_extensions);
+std::string GraphBuilder::add(const StageInfo& stage, int frame, const Command& command) {
+  return add(stage, frame_digits(frame), command);
 }
 
 std::string GraphBuilder::add_state(const char* concern, int first, const std::string& content) {

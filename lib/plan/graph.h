@@ -15,11 +15,11 @@
 
 namespace tempolux {
 
-/// A file that a rule of pipelines/stages.mk makes.
+/// A file that a command of a stage makes.
 struct GraphFile {
   std::string name;                 ///< relative to OUT: "photons/0012-3fa94c21d0.photons"
   std::vector<std::string> beside;  ///< further files of the same command
-  std::string stage;                ///< StageInfo::name
+  const StageInfo* stage = nullptr;
   std::string words;                ///< options of the command, inputs included
   bool passing = false;             ///< large: removed when all files that are made from it are there
   std::vector<std::string> inputs;  ///< names of files that must exist first
@@ -61,6 +61,8 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
 /// a walkthrough, and the neighbours of all of these if pictures hold motion.
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish);
 
+/// The words of a text that blanks separate.
+std::vector<std::string> words_of(std::string_view text);
 /// A file's name without its extension: "photons/0012-3fa94c21d0" for "photons/0012-3fa94c21d0.photons".
 std::string stem_of(const std::string& name);
 /// The same name with another extension.

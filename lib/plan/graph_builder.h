@@ -56,10 +56,8 @@ struct GraphBuilder {
   /// Hash of the cameras of these frames.
   std::string cameras(const std::vector<int>& frames) const;
   /// Adds a file unless it is there already; returns its name. `frames`: the first part of its name.
-  std::string add(const StageInfo& stage, const std::string& frames, const Command& command,
-                  const std::vector<std::string>& beside_extensions = {});
-  std::string add(const StageInfo& stage, int frame, const Command& command,
-                  const std::vector<std::string>& beside_extensions = {});
+  std::string add(const StageInfo& stage, const std::string& frames, const Command& command);
+  std::string add(const StageInfo& stage, int frame, const Command& command);
   /// Adds a file of state/ unless it is there already; returns its name. `concern` is its extension, `first` the first
   /// frame of its segment.
   std::string add_state(const char* concern, int first, const std::string& content);

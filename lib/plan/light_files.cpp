@@ -44,7 +44,7 @@ std::string static_photons(GraphBuilder& g, int frame) {
   Command c{"--frame " + std::to_string(first) + " --map static", {}, static_content(g, frame)};
   add_view(g, frame, c);
   c.option(photon_words(g, frame));
-  return g.add(stage::static_photons, first, c, {".paths"});
+  return g.add(stage_in("stands"), first, c);
 }
 
 /// Makes the command update the map of the previous state of light, of which it traces some groups again. The segment's
@@ -64,7 +64,7 @@ std::string static_points(GraphBuilder& g, int frame) {
   c.file("--photons", static_photons(g, frame));
   add_view(g, frame, c);
   c.option(g.wish.points);
-  return g.add(stage::static_points, first, c);
+  return g.add(stage_in("stands_points"), first, c);
 }
 
 /// Adds the options that name the points: all points, or the low and the high part.
@@ -73,7 +73,7 @@ void add_points(GraphBuilder& g, int lit, Command& c) {
   if (!g.decided(lit).split) return c.file("--points", all);
   Command divide;
   divide.file("", all);
-  const std::string low = g.add(stage::split, lit, divide, {".high.irradpoints"});
+  const std::string low = g.add(stage_in("split"), lit, divide);
   c.file("--points", low);
   c.file("--high", beside(low, ".high.irradpoints"));
 }
@@ -98,7 +98,7 @@ std::string static_records(GraphBuilder& g, int frame) {
   Command c{"--frames " + joined(pictures) + " --map static", {}, static_content(g, frame) + g.cameras(pictures)};
   c.file("--points", static_points(g, frame));
   c.option(record_words(g, frame));
-  return g.add(stage::static_records, pictures.front(), c);
+  return g.add(stage_in("stands_cache"), pictures.front(), c);
 }
 
 /// The state of light of the previous frame; `lit` itself at the first frame of the segment.
@@ -116,7 +116,7 @@ std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pic
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
   add_points(g, lit, c);
   c.option(record_words(g, lit));
-  return g.add(stage::records, pictures.front(), c);
+  return g.add(stage_in("cache"), pictures.front(), c);
 }
 
 std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
@@ -132,7 +132,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
   }
   for (const int frame : states) c.file("--dynamic", photon_map(g, frame));
   c.option(record_words(g, lit));
-  return g.add(stage::records, pictures.front(), c);
+  return g.add(stage_in("cache"), pictures.front(), c);
 }
 
 std::string record_file(GraphBuilder& g, int frame);
@@ -146,7 +146,7 @@ std::string kept_records(GraphBuilder& g, int lit) {
   const int before = state_before(g, lit);
   if (before < lit && over_time(g, before)) c.file("--previous", beside(record_file(g, before), ".radsamples"));
   c.option(record_words(g, lit));
-  return g.add(stage::kept, lit, c, {".radsamples"});
+  return g.add(stage_in("kept"), lit, c);
 }
 
 std::string record_file(GraphBuilder& g, int frame) {
@@ -169,7 +169,7 @@ std::string preview_photons(GraphBuilder& g, int frame, bool still) {
   Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, g.state(frame).light};
   add_view(g, frame, c);
   c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
-  return g.add(stage::photons, frame, c);
+  return g.add(stage_in("photons"), frame, c);
 }
 
 std::string width_words(const GraphBuilder& g, int frame) {
@@ -188,7 +188,7 @@ std::string counts(GraphBuilder& g, int frame) {
   for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
     c.content += g.state(std::clamp(f, s.first, s.last)).light;
   c.file("--photons", preview_photons(g, frame, false));
-  return g.add(stage::counts, frame, c);
+  return g.add(stage_in("counts"), frame, c);
 }
 
 /// The light textures of a state of light.
@@ -198,11 +198,11 @@ std::string preview_light(GraphBuilder& g, int lit) {
   if (s.states().size() == 1) {
     c.option("--kinds " + s.decisions.kinds + " --reach 0 " + width_words(g, lit));
     c.file("--photons", preview_photons(g, lit, true));
-    return g.add(stage::windows, lit, c);
+    return g.add(stage_in("windows"), lit, c);
   }
   c.option(width_words(g, lit) + " --counts");
   for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(g, f));
-  return g.add(stage::windows, lit, c);
+  return g.add(stage_in("windows"), lit, c);
 }
 
 }  // namespace
@@ -212,7 +212,7 @@ std::string photon_map(GraphBuilder& g, int lit) {
     Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, g.state(lit).light};
     c.file("--static", beside(static_photons(g, lit), ".paths"));
     add_view(g, lit, c);
-    return g.add(stage::moved_photons, lit, c);
+    return g.add(stage_in("moved"), lit, c);
   }
   Command c = g.at(lit);
   add_view(g, lit, c);
@@ -220,7 +220,7 @@ std::string photon_map(GraphBuilder& g, int lit) {
   if (g.plan.media && !(g.wish.update.empty() && g.wish.refine.empty()))
     c.state_file("--majorants", majorants_file(g, lit));
   if (g.plan.media && !g.wish.update.empty()) add_update(g, lit, c);
-  return g.add(stage::photons, lit, c);
+  return g.add(stage_in("photons"), lit, c);
 }
 
 std::string refined_photon_map(GraphBuilder& g, int lit) {
@@ -232,7 +232,7 @@ std::string refined_photon_map(GraphBuilder& g, int lit) {
            std::to_string(std::uint64_t(std::stod(g.wish.refine) / 100 * double(g.decided(lit).photon_paths))));
   add_view(g, lit, c);
   c.option("--kinds " + g.decided(lit).kinds);
-  return g.add(stage::refined, lit, c);
+  return g.add(stage_in("refined"), lit, c);
 }
 
 std::string point_file(GraphBuilder& g, int lit) {
@@ -246,7 +246,7 @@ std::string point_file(GraphBuilder& g, int lit) {
   }
   add_view(g, lit, c);
   c.option(g.wish.points);
-  return g.add(stage::points, lit, c);
+  return g.add(stage_in("points"), lit, c);
 }
 
 void add_light(GraphBuilder& g, int frame, Command& c) {

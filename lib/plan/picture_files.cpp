@@ -17,7 +17,7 @@ std::string clear_picture(GraphBuilder& g, int frame) {
                         (g.wish.method == FrameMethod::automatic && g.decided(frame).walk && g.wish.filter <= 1));
   if (walk) return walked_picture(g, frame);
   if (g.wish.filter > 0) return filtered_picture(g, frame, g.wish.channels);
-  return g.add(stage::pictures, frame, frame_command(g, frame, pixels_of(g, frame), g.wish.channels));
+  return g.add(stage_in("pictures"), frame, frame_command(g, frame, pixels_of(g, frame), g.wish.channels));
 }
 
 }  // namespace
@@ -67,12 +67,12 @@ std::string filtered_picture(GraphBuilder& g, int frame, const std::string& chan
   for (int f = frame - g.wish.filter / 2; f <= frame + g.wish.filter / 2; ++f) {
     if (f != g.clamped(f)) continue;
     const int like = shown_by(g, f, raw_names);
-    const std::string raw = g.add(stage::raw, like, frame_command(g, like, pixels, raw_names));
+    const std::string raw = g.add(stage_in("raw"), like, frame_command(g, like, pixels, raw_names));
     if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
     if (f == frame) position = c.inputs.size();
   }
   c.option("--position " + std::to_string(position) + " --channels " + channels);
-  return g.add(stage::filtered, frame, c);
+  return g.add(stage_in("filtered"), frame, c);
 }
 
 std::string picture_file(GraphBuilder& g, int frame) {
@@ -85,7 +85,7 @@ std::string picture_file(GraphBuilder& g, int frame) {
   c.file("--photons", refined_photon_map(g, lit));
   if (g.decided(frame).points()) c.file("--points", point_file(g, lit));
   c.option(g.wish.smoke_words);
-  return g.add(stage::smoke, frame, c);
+  return g.add(stage_in("smoky"), frame, c);
 }
 
 }  // namespace tempolux

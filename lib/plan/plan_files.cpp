@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
+#include <iterator>
+#include <map>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/formatted.h"
 #include "lib/core/json.h"
 
 namespace tempolux {
@@ -77,13 +79,20 @@ Json segment_json(const PlannedSegment& segment) {
   return json;
 }
 
-/// The stages of the pipeline: how many files each makes, and the first segment's reason.
-Json stages_json(const Plan& plan, const Graph& graph) {
-  std::map<std::string, std::size_t> files;
+/// All stages: what they are, how many files each makes here, and the first segment's reason.
+Json stages_json(const Plan& plan, const Graph& graph, const StageCosts& costs) {
+  std::map<const StageInfo*, std::size_t> files;
   for (const GraphFile& file : graph.files) ++files[file.stage];
   Json json = Json::array();
   for (const StageInfo& stage : kStages) {
-    Json one = {{"stage", stage.name}, {"files", files[std::string(stage.name)]}};
+    Json one = {{"stage", stage.name},
+                {"folder", stage.folder},
+                {"tool", stage.command},
+                {"extensions", stage.extensions},
+                {"part", kParts[std::size_t(stage.part)]},
+                {"words", stage.words},
+                {"cpu_s", costs.at(std::string(stage.folder)).cpu_s},
+                {"files", files[&stage]}};
     for (const Reason& reason : plan.segments.front().decisions.reasons)
       if (reason.stage == stage.name) one["because"] = reason.because;
     json.push_back(one);
@@ -91,10 +100,70 @@ Json stages_json(const Plan& plan, const Graph& graph) {
   return json;
 }
 
-std::string words_of(const std::vector<std::string>& names) {
+/// A string of JSON. A name that is no UTF-8 has its bytes from 128 on as \udc80 to \udcff: so Python's os.fsencode()
+/// gives the name back.
+std::string json_text(const std::string& text) {
+  try {
+    return Json(text).dump();
+  } catch (const Json::type_error&) {
+    std::string all = "\"";
+    for (const unsigned char c : text) {
+      const std::string one = c < 128 ? Json(std::string(1, char(c))).dump() : formatted("\"\\udc%02x\"", c);
+      all += one.substr(1, one.size() - 2);
+    }
+    return all + "\"";
+  }
+}
+
+/// A line for each file: its command, and the files that must exist first.
+std::string files_json(const Graph& graph, const PlanContext& context) {
+  std::string text;
+  for (const GraphFile& file : graph.files) {
+    std::string argv;
+    for (const std::string& word : command_of(file, context)) argv += (argv.empty() ? "" : ", ") + json_text(word);
+    const StageCost& cost = context.costs.find(file.stage->folder)->second;
+    text += (text.empty() ? "" : ",\n  ") + ("{\"file\": " + Json(file.name).dump());
+    if (!file.beside.empty()) text += ", \"beside\": " + Json(file.beside).dump();
+    text += ", \"stage\": " + Json(file.stage->name).dump() + ", \"argv\": [" + argv +
+            "], \"inputs\": " + Json(file.inputs).dump() +
+            formatted(", \"cpu_s\": %.3g, \"memory\": %.0f}", cost.cpu_s, cost.memory);
+  }
+  return "[\n  " + text + "\n ]";
+}
+
+std::string all_of(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += " " + name;
   return text;
+}
+
+/// The options that name what a command writes: its files, and its statistics.
+std::string outputs_of(const StageInfo& stage, const std::string& stem) {
+  std::string text;
+  for (const char c : stage.outputs)
+    text += c == '@' ? stem : c == '%' ? stem + words_of(stage.extensions).front() : std::string(1, c);
+  return text;
+}
+
+/// A rule for each stage that makes files of the plan, in words of stages.mk; and the folders of pictures.
+std::string stage_rules(const Graph& graph) {
+  static constexpr const char* kSeen[] = {"$(words)", "$(scene)", "$(drawn)", "$(seen)"};
+  std::string rules, pictures;
+  for (const StageInfo& stage : kStages) {
+    if (std::ranges::find(graph.files, &stage, &GraphFile::stage) == graph.files.end()) continue;
+    const std::string folder(stage.folder);
+    if (stage.makes_pictures()) pictures += " " + folder;
+    if (stage.outputs.empty()) continue;
+    std::string targets, made;
+    for (const std::string& extension : words_of(stage.extensions)) {
+      targets += (targets.empty() ? "" : " ") + folder + "/%" + extension;
+      made += " " + folder + "/$*" + extension;
+    }
+    rules += targets + ":\n\t$(run)" + made + " $(tool)" + std::string(stage.command) + " " +
+             kSeen[std::size_t(stage.sees)] + " " + outputs_of(stage, folder + "/$*") + "; }\n";
+    if (stage.makes_pictures()) rules += "\t$(follow)\n";
+  }
+  return "pictures :=" + pictures + "\n" + rules;
 }
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
@@ -121,7 +190,7 @@ std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& to
         shown_lines(name + ".png", digits + "-" + key_of_text(picture + exposure) + ".png", picture + " " + exposure);
   }
   if (!graph.intervals.empty()) {
-    const std::string intervals = words_of(graph.intervals);
+    const std::string intervals = all_of(graph.intervals);
     text += "log := walk.log\n" + shown_lines("walk.log", "walk-" + key_of_text(intervals), intervals);
   }
   return "frames :=" + frames + "\npreviews :=" + previews + "\nviewer := tempolux-info-" + key_of_text(viewer) + "\n" +
@@ -154,33 +223,45 @@ Decisions read_decisions(const std::string& text) {
   } catch (const std::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
 }
 
-std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history) {
+std::vector<std::string> command_of(const GraphFile& file, const PlanContext& context) {
+  const StageInfo& stage = *file.stage;
+  if (stage.outputs.empty()) return {};
+  std::vector<std::string> words = words_of(stage.command);
+  if (stage.sees >= Sees::scene) words.push_back(context.scene);
+  std::ranges::copy(words_of(file.words), std::back_inserter(words));
+  if (stage.sees >= Sees::scene) std::ranges::copy(context.options, std::back_inserter(words));
+  if (stage.sees >= Sees::camera) words.insert(words.end(), {"--camera", context.camera});
+  std::ranges::copy(words_of(outputs_of(stage, stem_of(file.name))), std::back_inserter(words));
+  return words;
+}
+
+std::string plan_json(const Plan& plan, const Graph& graph, const PlanContext& context) {
   Json json = {{"format", "tempolux plan"},
-               {"version", "2.0"},
-               {"history", history},
-               {"scene", scene_name},
+               {"version", "2.1"},
+               {"history", context.history},
+               {"scene", std::filesystem::path(context.scene).filename().string()},
                {"camera", plan.camera},
                {"fps", plan.time.fps},
                {"segment_length", plan.time.segment_length},
                {"light_units", plan.time.light_units},
                {"frames", plan.frames}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
-  json["stages"] = stages_json(plan, graph);
+  json["stages"] = stages_json(plan, graph, context.costs);
   json["segments"] = Json::array();
   for (const PlannedSegment& segment : plan.segments) json["segments"].push_back(segment_json(segment));
   json["pictures"] = Json::object();
   for (const auto& [frame, name] : graph.pictures) json["pictures"][frame_digits(frame)] = name;
   json["warnings"] = plan.warnings;
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+  return text.substr(0, text.size() - 2) + ",\n \"files\": " + files_json(graph, context) + "\n}\n";
 }
 
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
-  std::string text = "# Written by scene-plan; format: formats/plan/plan.md.\n";
-  std::string passing;
+  std::string text = "# Written by scene-plan; format: formats/plan/plan.md.\n" + stage_rules(graph), passing;
   for (const GraphFile& file : graph.files) {
-    const std::string made = file.name + words_of(file.beside);
+    const std::string made = file.name + all_of(file.beside);
     if (file.passing) passing += " " + file.name;
-    text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
+    text += made + ": words := " + file.words + "\n" + made + ": |" + all_of(file.inputs) + "\n";
   }
   if (!passing.empty()) text += "passing :=" + passing + "\n";
   return text + shown_rules(plan, graph, tool_hash) + report_rules(graph, tool_hash);

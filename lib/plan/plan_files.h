@@ -2,14 +2,29 @@
 // (formats/plan/plan.md).
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
+#include "lib/plan/estimate.h"
 #include "lib/plan/graph.h"
 
 namespace tempolux {
 
+/// What commands say besides GraphFile::words, and what they cost. Names may hold any byte.
+struct PlanContext {
+  std::string scene;                 ///< the scene's file, an absolute name
+  std::vector<std::string> options;  ///< of all stages that read the scene
+  std::string camera;                ///< name of the camera, or auto
+  StageCosts costs;                  ///< of one command of each stage
+  std::string history;
+};
+
+/// The whole command of a file: the program, its options, the outputs. Empty for files that walkthrough.sh makes.
+std::vector<std::string> command_of(const GraphFile& file, const PlanContext& context);
+
 /// The text of plan.json.
-std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history);
+std::string plan_json(const Plan& plan, const Graph& graph, const PlanContext& context);
 
 /// The text of plan.mk. It holds names of generated files only: no text from the scene and no file name of the user.
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash);

@@ -1,61 +1,106 @@
-// lib/plan/stages.h -- the table of the pipeline's stages, which the plan, its cost estimate and the manuals read.
+// lib/plan/stages.h -- the table of the pipeline's stages, the only list of them: the plan, its rules for make,
+// its costs, progress, clean, the pages and the benches read it.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "lib/plan/decisions.h"
 
 namespace tempolux {
 
-/// A stage makes one kind of file; pipelines/stages.mk has a rule for each.
-struct StageInfo {
-  std::string_view name;       ///< as in plan.json
-  std::string_view folder;     ///< in OUT, holds its files
-  std::string_view extension;  ///< extension of the file that later stages read
-  std::string_view tool;       ///< the program that runs
-  /// Phases of its statistics whose time grows with the work, separated by commas.
-  std::string_view work;
+/// The words of the user that a stage's command gets besides its own, each kind with those before it.
+enum class Sees : std::uint8_t {
+  files,   ///< none: it reads files alone
+  scene,   ///< the scene, and the options of all that read it
+  drawn,   ///< the seed
+  camera,  ///< the camera
 };
 
-namespace stage {
-inline constexpr StageInfo photons{"photon-trace", "photons", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo static_photons{"photon-trace --map static", "stands", ".photons", "photon-trace",
-                                          "trace,commit"};
-inline constexpr StageInfo moved_photons{"photon-trace --map dynamic", "moved", ".photons", "photon-trace",
-                                         "trace,commit"};
-inline constexpr StageInfo refined{"photon-trace --refine", "refined", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo points{"irradcache-build points", "points", ".irradpoints", "irradcache-build",
-                                  "read photons,points,write"};
-inline constexpr StageInfo static_points{"irradcache-build points --map static", "stands_points", ".irradpoints",
-                                         "irradcache-build", "read photons,points,write"};
-inline constexpr StageInfo split{"photonmap-split", "split", ".low.irradpoints", "photonmap-split", "split"};
-inline constexpr StageInfo records{"irradcache-build records", "cache", ".irradcache", "irradcache-build", "records"};
-inline constexpr StageInfo static_records{"irradcache-build records --map static", "stands_cache", ".irradcache",
-                                          "irradcache-build", "records"};
-inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", "gather-temporal", "records"};
-inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
-inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
-                                   "read counts,windows,filter,write"};
-inline constexpr StageInfo raw{"frame-render (raw)", "raw", ".exr", "frame-render", "render,data channels,write"};
-inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
-inline constexpr StageInfo pictures{"frame-render", "pictures", ".exr", "frame-render", "render,data channels,write"};
-inline constexpr StageInfo filtered{"st-filter", "filtered", ".exr", "st-filter", "filter"};
-inline constexpr StageInfo walk{"ibr-warp", "walk", ".done", "ibr-warp", "warp"};
-inline constexpr StageInfo walked{"frame-render --mask", "walked", ".exr", "frame-render", "render"};
-inline constexpr StageInfo smoke{"volume-compose", "smoky", ".exr", "volume-compose", "march"};
-inline constexpr StageInfo reference{"frame-render --integrator path", "path", ".exr", "frame-render", "render"};
-inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare", "compare"};
-}  // namespace stage
+/// The part of the work that a stage belongs to.
+enum class Part : std::uint8_t { photons, points, cache, frames, report };
+inline constexpr const char* kParts[] = {"photons", "points", "cache", "frames", "report"};
 
-/// In the order in which they run.
-inline constexpr std::array kStages{
-    stage::static_photons, stage::photons,        stage::moved_photons, stage::refined,
-    stage::static_points,  stage::points,         stage::split,         stage::counts,
-    stage::windows,        stage::static_records, stage::records,       stage::kept,
-    stage::keys,           stage::walk,           stage::walked,        stage::raw,
-    stage::filtered,       stage::pictures,       stage::smoke,         stage::reference,
-    stage::error};
+/// A stage makes one kind of file.
+struct StageInfo {
+  std::string_view folder;   ///< in OUT, holds its files
+  std::string_view name;     ///< as in plan.json
+  std::string_view command;  ///< the program that runs, and its first words
+  Sees sees;
+  /// Options that name what the command writes. @ stands for FOLDER/FRAMES-KEY, % for the first file. "":
+  /// pipelines/stages.mk has the rule.
+  std::string_view outputs;
+  std::string_view extensions;  ///< of its files, separated by blanks; later stages read the first
+  Part part;
+  std::string_view words;  ///< for people
+  /// Cost of one command for the demo at 640x360, of smoke for a room of 1 m: CPU seconds, and the largest memory in
+  /// MB. What `make estimate` measures replaces it.
+  double cpu_s, memory_mb;
+  /// Phases of its statistics whose time grows with the work, separated by commas.
+  std::string_view work;
+
+  std::string_view tool() const { return command.substr(0, command.find(' ')); }
+  bool makes_pictures() const { return part == Part::frames && extensions == ".exr"; }
+};
+
+inline constexpr std::string_view kUsual = "-o % --stats @.json";
+inline constexpr std::string_view kTracing = "trace,commit", kPlacing = "read photons,points,write",
+                                  kRendering = "render,data channels,write";
+
+/// All stages, in the order in which they run.
+inline constexpr auto kStages = std::to_array<StageInfo>({
+    {"stands", "photon-trace --map static", "photon-trace", Sees::drawn, "-o @.photons --paths @.paths --stats @.json",
+     ".photons .paths", Part::photons, "photons of the static scene", 1, 23, kTracing},
+    {"photons", "photon-trace", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons, "photons", 1, 23,
+     kTracing},
+    {"moved", "photon-trace --map dynamic", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,
+     "photons that movers change", 0.1, 22, kTracing},
+    {"refined", "photon-trace --refine", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,
+     "more photons where smoke is noisy", 0.4, 17, kTracing},
+    {"stands_points", "irradcache-build points --map static", "irradcache-build points", Sees::drawn, kUsual,
+     ".irradpoints", Part::points, "light on static surfaces", 1.1, 84, kPlacing},
+    {"points", "irradcache-build points", "irradcache-build points", Sees::drawn, kUsual, ".irradpoints", Part::points,
+     "light on surfaces", 0.7, 87, kPlacing},
+    {"split", "photonmap-split", "photonmap-split", Sees::files,
+     "--low @.low.irradpoints --high @.high.irradpoints --stats @.json", ".low.irradpoints .high.irradpoints",
+     Part::points, "bright points apart", 0.1, 23, "split"},
+    {"counts", "st-filter mesh --counts", "st-filter mesh", Sees::scene, kUsual, ".meshirrad", Part::cache,
+     "photons counted", 0.1, 72, "count,write"},
+    {"windows", "gather-temporal density", "gather-temporal density", Sees::scene, kUsual, ".meshirrad", Part::cache,
+     "light from photons of many frames", 2.2, 221, "read counts,windows,filter,write"},
+    {"stands_cache", "irradcache-build records --map static", "irradcache-build records", Sees::camera, kUsual,
+     ".irradcache", Part::cache, "indirect light on static surfaces", 13, 66, "records"},
+    {"cache", "irradcache-build records", "irradcache-build records", Sees::camera, kUsual, ".irradcache", Part::cache,
+     "indirect light", 3.4, 92, "records"},
+    {"kept", "gather-temporal final", "gather-temporal final", Sees::camera,
+     "-o @.radsamples --cache @.irradcache --stats @.json", ".irradcache .radsamples", Part::cache,
+     "indirect light, kept over time", 6.4, 100, "records"},
+    {"keys", "frame-render (keys)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels of a key frame",
+     7.2, 210, kRendering},
+    {"walk", "ibr-warp", "ibr-warp", Sees::camera, "", ".done", Part::frames, "distance of keys", 0.2, 210, "warp"},
+    {"walked", "frame-render --mask", "frame-render", Sees::camera, "", ".exr", Part::frames, "warped from keys", 7.2,
+     210, "render"},
+    {"raw", "frame-render (raw)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels", 8.3, 329,
+     kRendering},
+    {"filtered", "st-filter", "st-filter", Sees::files, kUsual, ".exr", Part::frames, "noise filter", 0.8, 248,
+     "filter"},
+    {"pictures", "frame-render", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels", 8.9, 183,
+     kRendering},
+    {"smoky", "volume-compose", "volume-compose", Sees::camera, kUsual, ".exr", Part::frames, "smoke", 2.8, 44,
+     "march"},
+    {"path", "frame-render --integrator path", "frame-render", Sees::camera, kUsual, ".exr _a.exr _b.exr", Part::report,
+     "path-traced reference", 60, 210, "render"},
+    {"error", "aqm-compare", "aqm-compare", Sees::files, "--json @.json --quiet", ".json", Part::report, "comparison",
+     0.2, 100, "compare"},
+});
+
+/// The stage whose files are in this folder of OUT. A name that no stage has fails to compile.
+consteval const StageInfo& stage_in(std::string_view folder) {
+  for (const StageInfo& stage : kStages)
+    if (stage.folder == folder) return stage;
+  throw "no stage has this folder";
+}
 
 /// The wish with all values that it leaves open set by the preset of its quality. draft takes less than half of the
 /// time of final.

@@ -26,7 +26,7 @@ std::string key_picture(GraphBuilder& g, int frame) {
   const std::string channels = with_channels(g.wish.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
   frame = shown_by(g, frame, channels);
   if (g.wish.filter > 0) return filtered_picture(g, frame, channels);
-  return g.add(stage::keys, frame, frame_command(g, frame, pixels_of(g, frame), channels));
+  return g.add(stage_in("keys"), frame, frame_command(g, frame, pixels_of(g, frame), channels));
 }
 
 /// Finds the interval of constant light that holds the frame between its keys; false if the frame is a key. Intervals
@@ -57,7 +57,7 @@ std::string interval_file(GraphBuilder& g, const Interval& i) {
                                     left.empty() ? "-" : left, right.empty() ? "-" : right})
       c.option(word);
     c.content = g.tool_hash("aqm-compare") + g.cameras({i.middle()});
-    return g.add(stage::walk, name, c);
+    return g.add(stage_in("walk"), name, c);
   });
 }
 
@@ -83,7 +83,7 @@ std::string walked_picture(GraphBuilder& g, int frame) {
         "--channels " + (g.wish.filter > 0 ? raw_channels(g.wish, g.wish.channels) : g.wish.channels)})
     c.option(words);
   c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
-  return g.add(stage::walked, frame, c);
+  return g.add(stage_in("walked"), frame, c);
 }
 
 }  // namespace tempolux

@@ -8,10 +8,8 @@ import re
 import subprocess
 from pathlib import Path
 
-# Folders of OUT by the part of the work that tables show.
-STAGES = {"photons": ("photons", "stands", "moved", "refined"), "points": ("points", "stands_points", "split"),
-          "cache": ("cache", "stands_cache", "kept"),
-          "frames": ("keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
+# Parts of the work that tables show; plan.json says to which part a stage belongs.
+PARTS = ("photons", "points", "cache", "frames")
 
 
 # ---- running it
@@ -63,40 +61,31 @@ def plan_of(out):
     return json.loads((Path(out) / "plan.json").read_text())
 
 
+def folders_of(out, parts=PARTS):
+    """Folders of OUT with the files of these parts of the work."""
+    return {stage["folder"] for stage in plan_of(out)["stages"] if stage["part"] in parts}
+
+
 def made_files(out):
     """Names inside OUT that the current plan makes, relative to it: the first of each command's."""
-    return re.findall(r"^(\S+)[^:\n]*: words :=", (Path(out) / "plan.mk").read_text(), re.M)
+    return [entry["file"] for entry in plan_of(out)["files"]]
 
 
-def count_of(out):
-    """How many processes the plan has, by part of the work; of a walkthrough at most so many."""
-    folders = [name.split("/")[0] for name in made_files(out)]
-    return {stage: sum(folder in of for folder in folders) for stage, of in STAGES.items()}
-
-
-def stats_files(out, stages=tuple(STAGES)):
-    """Statistics of all processes of the current plan that have run, of these parts of the work."""
-    wanted = {folder for stage in stages for folder in STAGES[stage]}
-    stems = [Path(out) / name.split(".")[0] for name in made_files(out) if name.split("/")[0] in wanted]
-    files = [stem.with_name(stem.name + end) for stem in stems for end in (".json", ".warp.json")]
-    return [file for file in files if file.exists()]
-
-
-def stats_in(out, folder):
-    """Statistics of the processes of the current plan whose files are in this folder of OUT."""
-    stems = [Path(out) / name.split(".")[0] for name in made_files(out) if name.split("/")[0] == folder]
+def stats_in(out, *folders):
+    """Statistics of all processes of the current plan that have run and whose files are in these folders of OUT."""
+    stems = [Path(out) / name.split(".")[0] for name in made_files(out) if name.split("/")[0] in folders]
     files = [stem.with_name(stem.name + end) for stem in stems for end in (".json", ".warp.json")]
     return [json.loads(file.read_text()) for file in files if file.exists()]
 
 
-def stats_of(out, stages=tuple(STAGES)):
-    """Their content."""
-    return [json.loads(file.read_text()) for file in stats_files(out, stages)]
+def stats_of(out, parts=PARTS):
+    """Statistics of all processes of the current plan that have run, of these parts of the work."""
+    return stats_in(out, *folders_of(out, parts))
 
 
 def cpu_of(out):
     """CPU seconds by part of the work."""
-    return {stage: sum(stats["cpu_s"] for stats in stats_of(out, (stage,))) for stage in STAGES}
+    return {part: sum(stats["cpu_s"] for stats in stats_of(out, (part,))) for part in PARTS}
 
 
 def picture_of(out, frame):

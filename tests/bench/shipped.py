@@ -10,7 +10,7 @@ import cases
 import exr
 import pipeline
 
-STAGES = tuple(pipeline.STAGES)
+STAGES = pipeline.PARTS
 CHANNELS = ("RGBA", "layers")
 
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# scene-plan writes the example of formats/plan/plan.md: sh tests/pipelines/plan_example.sh BIN [--write]
+# scene-plan writes the examples of formats/plan/plan.md, and its table of stages: sh tests/pipelines/plan_example.sh
+# BIN [--write]
 # Run at the top of the tree; BIN is the folder with the tools. Keys hash the programs, so any key is accepted at its
 # place. A second run must write nothing. --write: puts what scene-plan writes onto the page instead.
 bin=$1 write=$2 top=$PWD page=formats/plan/plan.md
@@ -7,19 +8,30 @@ work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 keyless() { sed 's/-[0-9a-f]\{10\}/-KEY/g'; }
 command=$(sed -n 's/^`\(scene-plan [^`]*\)` writes this plan.mk.*/\1/p' $page)
-sed -n '/^```make$/,/^```$/p' $page | sed '1d;$d' | keyless > "$work/expected"
-[ -n "$command" ] && [ -s "$work/expected" ] || { echo "FAILED: no example in $page"; exit 1; }
+[ -n "$command" ] || { echo "FAILED: no example in $page"; exit 1; }
 folder=${command##* -o }; folder=${folder%% *}
 
 ln -s "$top/pipelines" "$work/pipelines" && cd "$work" && eval "$bin/$command --quiet" || exit 1
-if [ "$write" = --write ]; then
-  awk -v example="$folder/plan.mk" '/^```$/ { inside = 0 } !inside
-    /^```make$/ { inside = 1; while ((getline line < example) > 0) print line }' "$top/$page" > page &&
-    cat page > "$top/$page"
-  exit
-fi
-keyless < "$folder/plan.mk" | diff -u expected - || { echo 'FAILED: plan.mk is not as on the page'; exit 1; }
-python3 -m json.tool "$folder/plan.json" > /dev/null || { echo 'FAILED: plan.json is no JSON'; exit 1; }
+# The page with what scene-plan writes: the block of make, the block of text, the rows of the table of stages.
+python3 - "$top/$page" "$folder" > page << 'END' || { echo 'FAILED: plan.json or the page'; exit 1; }
+import json, re, sys
+page, out = open(sys.argv[1]).read(), sys.argv[2]
+plan = json.load(open(f"{out}/plan.json"))
+line = next(line for line in open(f"{out}/plan.json") if line.startswith('  {"file": "cache/0000-'))
+entry = re.sub(r'"/[^"]*/pipelines/', '"/home/me/tempolux/pipelines/', line.strip().rstrip(","))
+rows = "".join(f"| {s['folder']} | {s['extensions'].replace(' ', ', ')} | {s['stage']} | {s['tool']} | {s['words']} |\n"
+               for s in plan["stages"])
+for start, text, end in (("```make\n", open(f"{out}/plan.mk").read(), "```\n"), ("```text\n", entry + "\n", "```\n"),
+                         ("| folder | files | stage | program | what it makes |\n|---|---|---|---|---|\n", rows, "\n")):
+    before, found, rest = page.partition(start)
+    assert found, start
+    page = before + found + text + rest[rest.index(end) if rest.startswith(end) else rest.index("\n" + end) + 1:]
+sys.stdout.write(page)
+END
+if [ "$write" = --write ]; then cat page > "$top/$page"; exit; fi
+keyless < "$top/$page" > expected
+keyless < page | diff -u expected - ||
+  { echo "FAILED: $page has something else; plan_example.sh BIN --write corrects it"; exit 1; }
 
 ls -lR --time-style=full-iso "$folder" > before
 eval "$bin/$command --quiet" || exit 1

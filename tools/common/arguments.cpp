@@ -215,6 +215,8 @@ void parse_size(const std::string& text, int& width, int& height) {
   width = w;
 }
 
+bool is_color(const std::string& text) { return text.find_first_not_of("0123456789.,e+-") == std::string::npos; }
+
 std::array<float, 3> parse_color(const std::string& text) {
   std::array<float, 3> color{};
   std::string_view rest = text;

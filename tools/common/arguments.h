@@ -33,6 +33,8 @@ std::uint64_t parse_bytes(const std::string& text);
 /// "640x360". Throws InputError; each from 1 to 65536.
 void parse_size(const std::string& text, int& width, int& height);
 
+/// True if the text can only be a colour. A file of such a name: ./1
+bool is_color(const std::string& text);
 /// "0.2,0.3,0.5" or "1" for all three: finite, from 0 to 1e30. Throws InputError.
 std::array<float, 3> parse_color(const std::string& text);
 

@@ -76,6 +76,21 @@ std::string Tool::history_line(std::optional<int> frame) const {
   return line + "\n";
 }
 
+std::vector<std::string> Tool::scene_words() const {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : std::as_const(state_->app).get_options()) {
+    if (!state_->of_scene.contains(option) || option->count() == 0) continue;
+    const std::string name = option_name(*option);
+    if (option->get_expected_max() == 0) words.push_back(name);
+    else
+      for (const std::string& value : option->results()) {
+        const bool file = name == "--volume" ? value != "none" : name == "--environment" && !is_color(value);
+        words.push_back(name + "=" + (file ? std::filesystem::absolute(value).string() : value));
+      }
+  }
+  return words;
+}
+
 std::string Tool::State::depfile_text(const std::vector<std::string>& targets) const {
   std::vector<std::string> inputs = common.state_files;
   for (const Dependency& dependency : dependencies)

@@ -191,17 +191,20 @@ void Tool::common_options(unsigned flags) {
         ->capture_default_str();
   if (flags & uses_seed) seed_options(*this, common);
   if (flags & uses_scene) {
+    const auto before = std::ptrdiff_t(app.get_options().size());
     scene_options(*this, common);
     environment_options();
     volume_options();
+    const std::vector<CLI::Option*> options = app.get_options();
+    state_->of_scene.insert(options.begin() + before, options.end());
     if (flags & uses_majorants)
       file_option("--majorants", common.volume.majorants,
                   "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
                   "segment; needed for maps that are updated");
     leave_out_of_history(file_option("--state", common.state_files,
                                      "state files of scene-plan, listed by --depfile instead of the scene's files"));
-    leave_out_of_history(
-        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    state_->of_scene.insert(leave_out_of_history(
+        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene")));
   }
   leave_out_of_history(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")

@@ -46,7 +46,7 @@ void SceneInput::add_environment() {
   const EnvironmentOptions options{common.environment_strength, common.environment_rotation_deg};
   const std::string& value = common.environment;
   if (value.empty()) return;
-  if (value.find_first_not_of("0123456789.,e+-") == std::string::npos) {  // a file of such a name: ./1
+  if (is_color(value)) {
     std::array<float, 3> color{};
     try {
       color = parse_color(value);

@@ -155,6 +155,9 @@ class Tool {
   /// With `frame`, --frames SPEC becomes --frame N and patterns in names are filled in, so that a file has the same
   /// history whether it was made alone or in a range.
   std::string history_line(std::optional<int> frame = {}) const;
+  /// The given options that every tool needs to read this scene in the same way: time, lights, media. Names of files
+  /// are absolute.
+  std::vector<std::string> scene_words() const;
   /// Adds a file that this run depends on, for --depfile (each once, in order). With --state, files of the scene are
   /// replaced by the state files. Throws InputError if an output would replace the file, unless it is `replaceable`.
   void depends_on(const std::string& file, InputRole role = InputRole::file);

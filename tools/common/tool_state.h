@@ -21,6 +21,7 @@ struct Tool::State {
   Common common;
   Stats stats;
   std::set<const CLI::Option*> left_out_of_history;
+  std::set<const CLI::Option*> of_scene;  ///< options with which every tool must read the scene
   std::set<const CLI::Option*> files;  ///< of file_option(): values may be patterns, unlike names of scenes and cameras
 
   struct Dependency {

@@ -73,7 +73,7 @@ void plan_range(Tool& tool, const PlanOptions& options, const std::string& argum
   tool.stats().phase("write");
   if (!folder) return write_samples(options.estimate, planner, wish);
   if (!options.measured.empty()) folder->inputs().hash_of(options.measured);
-  folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
+  folder->write(planner.planned(), planner.tool_hash(), arguments);
   for (const PlannedSegment& segment : planner.planned().plan.segments)
     for (const Reason& reason : segment.decisions.reasons)
       tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage +

@@ -9,9 +9,10 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/json.h"
+#include "lib/core/json_file.h"
 #include "lib/core/module_folders.h"
 #include "lib/plan/decide.h"
-#include "lib/plan/plan_files.h"
 #include "lib/volume/majorants_file.h"
 
 namespace tempolux::tools {
@@ -120,8 +121,17 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   return decided;
 }
 
-void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish,
-                       const std::string& history) {
+StageCosts PlanFolder::costs(int width, int height) const {
+  StageCosts costs = table_costs(width, height);
+  const std::string file = path_ + "/state/costs.json";
+  if (!fs::exists(file)) return costs;
+  const auto measured = read_json(file);
+  if (measured.at("size") == std::vector{width, height})
+    for (const auto& [stage, cost] : measured.at("stages").items()) costs[stage] = {cost.at(0), cost.at(1)};
+  return costs;
+}
+
+void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish) {
   for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
   for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
   for (const PlanFile& state : planned.graph.states) write_if_changed(path_ + "/" + state.name, state.content);
@@ -140,7 +150,7 @@ void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const 
   std::string warnings;
   for (const std::string& warning : planned.warnings) warnings += warning.substr(0, warning.find('\n')) + "\n";
   write_if_changed(path_ + "/state/warnings", warnings);
-  write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history));
+  write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.context));
   write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
   write_whole(path_ + "/state/inputs", inputs_.text(wish));  // written last: from here on the plan is up to date
 }
@@ -152,7 +162,9 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   const int camera = input_.scene().camera_node(tool.common().camera);
   tool.stats().phase("plan");
   Plan& plan = planned_.plan;
-  planned_.scene_name = fs::path(scene).filename().string();
+  planned_.context = {fs::absolute(scene).string(), tool.scene_words(), tool.common().camera,
+                      folder ? folder->costs(wish.width, wish.height) : table_costs(wish.width, wish.height),
+                      tool.history_line()};
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
                    helper_frames(tool.common().frames, wish));

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lib/plan/graph.h"
 #include "lib/plan/inputs.h"
+#include "lib/plan/plan_files.h"
 #include "tools/common/scene_input.h"
 
 namespace tempolux::tools {
@@ -16,7 +16,7 @@ namespace tempolux::tools {
 struct Planned {
   Plan plan;
   Graph graph;
-  std::string scene_name;
+  PlanContext context;
   std::vector<std::string> warnings;  ///< warnings about the scene
 };
 
@@ -32,8 +32,11 @@ class PlanFolder {
   /// The decisions for a segment: those of an earlier plan with the same key, else those of `decide`, which are stored
   /// for later plans.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
+  /// Costs of a command of each stage: as `make estimate` has measured them for pictures of this size, else those of
+  /// the table of stages.
+  StageCosts costs(int width, int height) const;
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
-  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
+  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish);
 
  private:
   std::string path_;

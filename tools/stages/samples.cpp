@@ -42,7 +42,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, 
     const double bytes = file->name.ends_with(".photons") ? photons
                          : records ? d.records_of(1 + double(std::ranges::count(file->words, ',')))
                                    : 1;
-    Runs& stage = runs[file->stage];
+    Runs& stage = runs[std::string(file->stage->name)];
     stage.count += 1;
     stage.work += bytes * (records ? rays : 1);
     stage.bytes += bytes;
@@ -56,7 +56,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, 
 std::vector<int> sampled_frames(const Planned& planned) {
   std::vector<int> frames{planned.plan.frames.front()};
   const auto warped = std::ranges::find_if(
-      planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage::walked.folder); });
+      planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage_in("walked").folder); });
   if (warped != planned.graph.pictures.end() && warped->first != frames.front()) frames.push_back(warped->first);
   return frames;
 }
@@ -64,6 +64,7 @@ std::vector<int> sampled_frames(const Planned& planned) {
 /// Mean cost of one file of a stage in a sample.
 struct Cost {
   double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
+  double memory = 0;  ///< largest of its processes, bytes
 };
 
 /// `files`: names of the files in `folder` that each command of the stage has written. Empty if one has no statistics.
@@ -77,14 +78,16 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
       if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
+    sum.memory = std::max(sum.memory, json.at("peak_memory_bytes").get<double>());
     sum.work_cpu_s += in_work;
     sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
     for (const std::string& name : names)
       if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
   const double count = double(files.size());
-  return count == 0 ? std::nullopt
-                    : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count});
+  return count == 0
+             ? std::nullopt
+             : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count, sum.memory});
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish) {
   const Planned& whole = planner.planned();
   const double large = std::min(0.5, kWidth / wish.width);
-  Json json = {{"scales", {large / 2, large}}};
+  Json json = {{"scales", {large / 2, large}}, {"size", {wish.width, wish.height}}};
   PlanFolder out(folder);
   for (std::size_t i = 0; i < kSamples.size(); ++i) {
     const double scale = json["scales"][i];
@@ -109,12 +112,12 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
       d.together = 1;
     }
     planned.graph = planner.graph(planned.plan, less);
-    out.write(planned, planner.tool_hash(), "", "");
+    out.write(planned, planner.tool_hash(), "");
     fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
     for (const GraphFile& file : planned.graph.files) {
       std::vector<std::string> names{file.name};
       names.insert(names.end(), file.beside.begin(), file.beside.end());
-      json[kSamples[i]][file.stage].push_back(names);
+      json[kSamples[i]][file.stage->name].push_back(names);
     }
   }
   // If the wish sets --rays, the records of a sample have as many rays as those of the whole run.
@@ -129,6 +132,7 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
     throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
   const Json json = read_json(folder + "/samples.json");
   std::vector<StageEstimate> estimates;
+  Json costs = {{"size", json.at("size")}};
   for (const StageInfo& stage : kStages) {
     const std::string name(stage.name);
     if (!json.at("runs").contains(name)) continue;
@@ -143,7 +147,10 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
     };
     estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s),
                          runs[2] * whole(a->bytes, b->bytes)});
+    costs["stages"][std::string(stage.folder)] = {estimates.back().cpu_s,
+                                                  std::max(b->memory, whole(a->memory, b->memory))};
   }
+  std::ofstream(folder + "/costs.json") << costs;
   return estimates;
 }
 

@@ -409,12 +409,45 @@ TEST(PlanFiles, NoWordOfTheSceneReachesMake) {
   EXPECT_NE(text.find("frames := frames/0000.exr frames/0001.exr\n"), std::string::npos);
 }
 
+PlanContext of_room(const std::string& scene) {
+  return {scene, {"--fps=30"}, "a camera", table_costs(640, 360), "history\n"};
+}
+
+TEST(PlanFiles, JsonHasTheWholeCommandOfEachFile) {
+  const Plan plan = plan_of(still_room(), {0});
+  const Graph graph = graph_of(plan, records());
+  const std::string text = plan_json(plan, graph, of_room("/a \"b\"\xc3\xa9/\xff.glb"));
+  EXPECT_NE(text.find("\"/a \\\"b\\\"\\udcc3\\udca9/\\udcff.glb\", "), std::string::npos) << text;
+  const PlanContext context = of_room("/a/room.glb");
+  const nlohmann::json files = nlohmann::json::parse(plan_json(plan, graph, context))["files"];
+  ASSERT_EQ(files.size(), graph.files.size());
+  const GraphFile& cache = file_of(graph, "cache/");
+  const auto found = std::ranges::find_if(files, [&](const nlohmann::json& one) { return one["file"] == cache.name; });
+  const std::vector<std::string> argv = (*found)["argv"];
+  EXPECT_EQ(argv, command_of(cache, context));
+  EXPECT_EQ((std::vector(argv.begin(), argv.begin() + 3)),
+            (std::vector<std::string>{"irradcache-build", "records", "/a/room.glb"}));
+  EXPECT_EQ((std::vector(argv.end() - 7, argv.end())),
+            (std::vector<std::string>{"--fps=30", "--camera", "a camera", "-o", cache.name, "--stats",
+                                      beside(cache.name, ".json")}));
+  EXPECT_EQ((*found)["inputs"], cache.inputs);
+}
+
+TEST(PlanFiles, EachStageHasItsOwnFolderAndName) {
+  std::set<std::string_view> folders, names;
+  for (const StageInfo& stage : kStages) {
+    folders.insert(stage.folder);
+    names.insert(stage.name);
+  }
+  EXPECT_EQ(folders.size(), kStages.size());
+  EXPECT_EQ(names.size(), kStages.size());
+}
+
 TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 1, 0});
   const Plan plan = plan_of(scene, {2});
-  const nlohmann::json json =
-      nlohmann::json::parse(plan_json(plan, graph_of(plan, records()), "room.glb", "history\n"));
+  const nlohmann::json json = nlohmann::json::parse(plan_json(plan, graph_of(plan, records()), of_room("room.glb")));
   EXPECT_EQ(json["format"], "tempolux plan");
   EXPECT_EQ(json["segments"][0]["moves"][0]["node"], "Box");
   EXPECT_EQ(json["segments"][0]["frames"][2]["lit_as"], 1);
