@@ -2,7 +2,7 @@
 
     SIZE=160x90 python3 tests/bench/blender_paths.py SHOT.blend BLENDER OUT FRAME SAMPLES -- the make line of the exporter
 
-Cycles with caustics, no clamping, 32 bounces. An object's mean is that of its pixels that are not at its edge. The error of the mean of n pixels
+Cycles with caustics, no clamping, 128 bounces. An object's mean is that of its pixels that are not at its edge. The error of the mean of n pixels
 is the root of the sum of (a - b)^2, over 2 n, of two pictures a, b with other random numbers. Objects with a channel beyond 3 % by more than two
 errors are marked far; noisy: two errors exceed 3 %, so nothing is known. KEEP=1: pictures that are there are not rendered again.
 """

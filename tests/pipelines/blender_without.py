@@ -3,7 +3,8 @@
     build/peers/bpy/bin/python tests/pipelines/blender_without.py SHOT.blend OUT.blend WORD...
 
 coat, sheen, film, anisotropy, subsurface: their weights 0.  smoke: domains with only a volume.  cards: holdouts and shadow catchers.
-hair: hair systems.  sun: sun lamps.  points: point lamps.  glass: panes of clear glass.  spread: area lamps shine to all sides.  sizes: radius of spots and
+hair: hair systems.  sun, points, spots, areas: lamps of this kind.  world: its light.
+specular: the reflection of Principled.  glass: panes of clear glass.  spread: area lamps shine to all sides.  sizes: radius of spots and
 points, angle of suns 0.  metallic: Metallic below 1 becomes 0.  frost: transmission of rough Principled becomes 0.  bumps: no Bump node.
 translucent: Translucent BSDF becomes Diffuse.  mixed: mixtures of a matte and a glossy shader become the matte one.
 close:NAME: the first frame alone, by a lens that shows this object alone from where the camera stands.
@@ -15,6 +16,7 @@ import sys
 import bpy
 import mathutils
 
+LAMPS = {"sun": "SUN", "points": "POINT", "spots": "SPOT", "areas": "AREA"}
 WEIGHTS = {
     "coat": "Coat Weight",
     "sheen": "Sheen Weight",
@@ -92,12 +94,15 @@ def take_out(word):
         for thing in objects:
             for modifier in [m for m in thing.modifiers if m.type == "PARTICLE_SYSTEM"]:
                 thing.modifiers.remove(modifier)
-    elif word == "sun":
-        remove(o for o in objects if o.type == "LIGHT" and o.data.type == "SUN")
+    elif word in LAMPS:
+        remove(o for o in bpy.data.objects if o.type == "LIGHT" and o.data.type == LAMPS[word])
+    elif word == "world":
+        bpy.context.scene.world = None
+    elif word == "specular":
+        for _, node in shaders("BSDF_PRINCIPLED"):
+            node.inputs["Specular IOR Level"].default_value = 0
     elif word.startswith("close:"):
         look_closely(bpy.context.scene, word[6:])
-    elif word == "points":
-        remove(o for o in bpy.data.objects if o.type == "LIGHT" and o.data.type == "POINT")
     elif word == "glass":
         remove(o for o in objects if is_clear_glass(o))
     elif word == "spread":

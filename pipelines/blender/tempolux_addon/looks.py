@@ -175,11 +175,16 @@ def conductor(node, stack):
 
 
 def glass(node, stack):
-    return Look(
+    look = Look(
         transmission=1.0,
         normal=bent_normal(node, stack),
         **inputs(node, stack, base="Color", roughness="Roughness", ior="IOR"),
     )
+    if node.type == "BSDF_REFRACTION":
+        look.lose("its Refraction BSDF reflects here, too")
+    elif look["base"] != WHITE:
+        look.lose("the colour of its Glass BSDF tints what goes through, not what is reflected")
+    return look
 
 
 def simple(**fixed):
