@@ -138,7 +138,11 @@ def half_metal(look):
     front = 2 * as_number(look["level"]) * (.04 if look.get("old_specular") else ((ior - 1) / (ior + 1)) ** 2)
     reflected = tuple((1 - share) * min(1.0, front * t) + share * c for t, c in zip(as_tuple(look["tint"]), base))
     top = min(max(max(reflected), 1e-6), .99)
-    kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
+    if front == 0:                 # the metal part alone reflects, along the surface too
+        look["reflects"] = reflected, share
+        kept = (1 - share) / (1 - (20 * top + share) / 21)
+    else:
+        kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
     look.update(
         metallic=0.0,
         base=tuple(min(1.0, kept * c) for c in base),
