@@ -36,7 +36,8 @@ cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.caustics_reflective = cycles.caustics_refractive = caustics
 if caustics:
     cycles.blur_glossy = 0
-cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 128  # ours has no limit
+for kind in ("max", "diffuse", "glossy", "transmission"):
+    setattr(cycles, kind + "_bounces", 128)  # ours has no limit
 cycles.pixel_filter_type = "BOX"
 cycles.filter_width = 1.0
 for i, thing in enumerate(scene.objects):

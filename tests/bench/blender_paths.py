@@ -1,10 +1,12 @@
-"""A .blend by Cycles without a denoiser beside its export by our path tracer, each twice: ratios by object, with their errors.
+"""A .blend by Cycles without a denoiser beside its export by our path tracer, each twice: ratios by object with errors.
 
     SIZE=160x90 python3 tests/bench/blender_paths.py SHOT.blend BLENDER OUT FRAME SAMPLES -- the make line of the exporter
 
-Cycles with caustics, no clamping, 128 bounces. An object's mean is that of its pixels that are not at its edge. The error of the mean of n pixels
-is the root of the sum of (a - b)^2, over 2 n, of two pictures a, b with other random numbers. Objects with a channel beyond 3 % by more than two
-errors are marked far; noisy: two errors exceed 3 %, so nothing is known. KEEP=1: pictures that are there are not rendered again.
+Cycles with caustics, no clamping, 128 bounces. An object's mean is that of its pixels that are not at its edge. The
+error of the mean of n pixels is the root of the sum of (a - b)^2, over 2 n, of two pictures a, b with other random
+numbers. Highlights smaller than a pixel are met by few samples, and their error is underrated. Objects with a channel
+beyond 3 % by more than two errors are marked far; noisy: two errors exceed 3 %, so nothing is known. KEEP=1: pictures
+that are there are not rendered again.
 """
 
 import math

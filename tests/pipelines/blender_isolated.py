@@ -93,8 +93,8 @@ BALLS = {
 }
 
 
-# A white matte surface below a smooth reflection in the light of a sun, or a black one in even light; degrees between the normal and
-# the sun, or the eye. The expected ratio is a closed form: see expected().
+# A white matte surface below a smooth reflection in the light of a sun, or a black one in even light; degrees between
+# the normal and the sun, or the eye. The expected ratio is a closed form: see expected().
 PLANES = {
     **{f"matte below a reflection, sun at {angle} degrees": ("sun", angle) for angle in (0, 45, 60, 75)},
     **{f"black, seen at {angle} degrees": ("eye", angle) for angle in (0, 45, 60, 75)},
@@ -102,8 +102,8 @@ PLANES = {
 
 
 def expected(kind, angle):
-    """Ours / Cycles. glTF: Schlick's rise from .04, and a matte part that loses what is reflected at both directions (lib/material/bsdf.h).
-    Cycles: Fresnel's equations, and a matte part that loses what is reflected towards the eye."""
+    """Ours / Cycles. glTF: Schlick's rise from .04, and a matte part that loses what is reflected at both directions
+    (lib/material/bsdf.h). Cycles: Fresnel's equations, and a matte part that loses what is reflected towards the eye."""
     c = math.cos(math.radians(angle))
     g = math.sqrt(1.5**2 - 1 + c * c)
     fresnel = ((g - c) / (g + c)) ** 2 / 2 * (1 + ((c * (g + c) - 1) / (c * (g - c) + 1)) ** 2)

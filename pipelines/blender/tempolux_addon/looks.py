@@ -313,8 +313,8 @@ def coated(matte_look, mirror, reflectance):
 
 
 def glazed(matte_look, mirror, share):
-    """Matte below a mirror that takes the same share at all angles, or rises to it along the surface. In Blender the matte part loses all of
-    the mirror's share, here what the mirror reflects: its colour is darker by the quotient."""
+    """Matte below a mirror that takes the same share at all angles, or rises to it along the surface. In Blender the
+    matte part loses all of the mirror's share, here what the mirror reflects: its colour is darker by the quotient."""
     look = coated(matte_look, mirror, times(mirror["base"], share))
     front = as_tuple(times(mirror["base"], share))
     along = max(front) if mirror.get("one_for_all_angles") else share

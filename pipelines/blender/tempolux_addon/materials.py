@@ -242,7 +242,8 @@ class Maker:
         return name in self.layers or len([n for n in self.layers if n]) < 1
 
     def image(self, data, picture):
-        """An image that the mesh shows once ends at its borders: coarse levels of a repeated one would mix in the other side."""
+        """An image that the mesh shows once ends at its borders: coarse levels of a repeated one would mix in the other
+        side."""
         once = not picture.transform and in_unit(self.shape.uvs[picture.uv or self.shape.render_uv])
         return self.document.texture(data, CLAMP if once else picture.wrap, picture.closest, picture.image.name)
 

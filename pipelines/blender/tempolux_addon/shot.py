@@ -149,7 +149,11 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
                 f"{view.view_transform} is not applied: previews are sRGB (Standard) at the scene's exposure; compare "
                 "the linear EXR files through one transform",
             )
-        shown = {"look": view.look not in ("None", ""), "gamma": abs(view.gamma - 1) > 1e-6, "curves": view.use_curve_mapping}
+        shown = {
+            "look": view.look not in ("None", ""),
+            "gamma": abs(view.gamma - 1) > 1e-6,
+            "curves": view.use_curve_mapping,
+        }
         for word in (word for word, used in shown.items() if used):
             self.notes.lost(Damage.HINT, f"the view's {word}", "is not applied to the previews")
 
