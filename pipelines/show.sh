@@ -4,8 +4,8 @@
 #
 #     shown/0012-KEY PICTURE                frames/0012.exr, a copy
 #     shown/0012-KEY.png PICTURE EXPOSURE   frames/0012.png
-#     shown/exposure-KEY PICTURE            the marker holds the exposure that suits the picture; all frames share
-#                                           it, so that the brightness does not jump
+#     shown/exposure-KEY PICTURE            the marker holds the exposure that the plan names, or the one that suits
+#                                           the picture; all frames share it, so that the brightness does not jump
 #     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border
 #     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
 #
@@ -44,6 +44,8 @@ case $marker in
   shown/exposure-*)
     ! given_up "$marker" || exit 3
     part_of "$marker"
+    planned=$(sed -n 's/^stops := *//p' "$PLAN")
+    [ -z "$planned" ] || { echo "$planned" > "$part" && mv -f "$part" "$marker"; exit; }
     [ -z "$V" ] || show $RUN "$BIN/tempolux-info" "$1" --json >&2
     ending $RUN "$BIN/tempolux-info" "$1" --json > "$part" || exit
     stops=$(sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' "$part")

@@ -85,6 +85,9 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
                  "(AQM); without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent());
+  tool.auto_option("--exposure", wish.exposure, -200, 200,
+                   "exposure of the previews: brightness times 2^STOPS; auto: what suits the first frame")
+      ->type_name("STOPS");
   text("--report", options.report, "FRAMES", "frames to compare with path tracing; ends: the first and the last");
   tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }

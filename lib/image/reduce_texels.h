@@ -14,8 +14,9 @@ struct TexelCodes {
 
   /// `bits` is 8 or 16. `srgb`: IEC 61966-2-1; else values are proportional to codes. Thread-safe.
   static const TexelCodes& of(int bits, bool srgb);
-  /// The code with the closest value, the higher of two; at least 1 for a value above 0.
-  std::uint32_t nearest(float of) const;
+  /// The code with the closest value; of two that are equally close the higher one with `up`, else the lower one. At
+  /// least 1 for a value above 0.
+  std::uint32_t nearest(float of, bool up) const;
 
  private:
   TexelCodes(std::size_t codes, bool srgb);
@@ -48,7 +49,11 @@ struct TexelKind {
 };
 
 /// A smaller level. Each texel is the mean of the linear light over its area, rounded to the closest code; it is 0 only
-/// if all texels of its area are 0. width and height are at most those of `from`.
-TexelLevel reduce_texels(const TexelLevel& from, int width, int height, const TexelKind& kind);
+/// if all texels of its area are 0. A mean half way between two codes, which smooth gradients have often, goes up in
+/// every second texel, as on a chessboard.
+/// `exact`: the linear values of `from` without rounding; empty: those of its codes. Becomes the values of the result,
+/// so that rounding does not add up over the levels. width and height are at most those of `from`.
+TexelLevel reduce_texels(const TexelLevel& from, int width, int height, const TexelKind& kind,
+                         std::vector<float>& exact);
 
 }  // namespace tempolux

@@ -53,10 +53,11 @@ TexturePyramid::TexturePyramid(CodedPixels pixels, TextureTransfer transfer)
       alpha_(&TexelCodes::of(pixels.bits, false)) {
   TEMPOLUX_CHECK(pixels.width > 0 && pixels.height > 0);
   levels_.push_back({pixels.width, pixels.height, std::move(pixels.bytes)});
+  std::vector<float> exact;
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     const TexelLevel& last = levels_.back();
     levels_.push_back(reduce_texels(last, std::max(1, last.width / 2), std::max(1, last.height / 2),
-                                    {channels_, bits_, cutout_, colour_, alpha_}));
+                                    {channels_, bits_, cutout_, colour_, alpha_}, exact));
   }
 }
 

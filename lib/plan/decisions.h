@@ -52,6 +52,7 @@ struct Wish {
   std::string points, records, pixels;
   bool preset_pixels = false;  ///< `pixels` holds the preset's options without --pixel-error, which is in Decisions
   std::string channels = "RGBA,Z,N,id";
+  std::optional<double> exposure;    ///< of the previews, stops; empty: what suits the first frame
   std::string smoke_words;           ///< options of volume-compose
   std::string update;                ///< share of the photon groups that is traced again in smoke, "10%"; "": all
   std::string refine;                ///< further light paths for smoke, as a share of a map's paths, "5%"; "": none

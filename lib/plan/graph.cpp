@@ -177,6 +177,7 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
                  "--size " + std::to_string(wish.width) + "x" + std::to_string(wish.height)};
   for (const int frame : plan.frames) g.graph.pictures[frame] = picture_file(g, plan.shows.at(frame));
   for (const int frame : wish.report) add_report(g, frame);
+  g.graph.exposure = wish.exposure;
   remove_when_read(g);
   return std::move(g.graph);
 }

@@ -20,7 +20,7 @@ import exr  # noqa: E402
 SIZE, TILES = tuple(map(int, os.environ.get("SIZE", "320x180").split("x"))), (8, 6)
 RENDER = """
 import bpy, sys
-blend, out, frames, width, height = sys.argv[-5:]
+blend, out, frames, width, height, samples, seed, tail = sys.argv[-8:]
 bpy.ops.wm.open_mainfile(filepath=blend)
 scene, caustics = bpy.context.scene, "caustics" in frames
 cycles, render = scene.cycles, scene.render
@@ -30,12 +30,14 @@ render.use_motion_blur = render.use_compositing = render.use_sequencer = False
 render.film_transparent = False
 for camera in bpy.data.cameras:
     camera.dof.use_dof = False
-cycles.samples, cycles.use_denoising, cycles.denoiser, cycles.use_adaptive_sampling = 128, True, "OPENIMAGEDENOISE", False
+cycles.samples, cycles.denoiser, cycles.seed = abs(int(samples)), "OPENIMAGEDENOISE", int(seed)
+cycles.use_denoising, cycles.use_adaptive_sampling = int(samples) > 0, False
 cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.caustics_reflective = cycles.caustics_refractive = caustics
 if caustics:
     cycles.blur_glossy = 0
-cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 32
+for kind in ("max", "diffuse", "glossy", "transmission"):
+    setattr(cycles, kind + "_bounces", 128)  # ours has no limit
 cycles.pixel_filter_type = "BOX"
 cycles.filter_width = 1.0
 for i, thing in enumerate(scene.objects):
@@ -53,15 +55,16 @@ for name in ("use_exr_interleave",):
 render.use_file_extension = False
 for frame in map(int, frames.split(":")[0].split(",")):
     scene.frame_set(frame)
-    render.filepath = f"{out}/{frame}_cycles.exr"
+    render.filepath = f"{out}/{frame}_{tail}.exr"
     bpy.ops.render.render(write_still=True)
 """
 
 
-def cycles(blend, blender, out, frames):
+def cycles(blend, blender, out, frames, samples=128, seed=0, tail="cycles"):
+    """Writes OUT/F_TAIL.exr; samples below 0: as many without OIDN. Returns the names of the objects by index."""
     script = out / "render.py"
     script.write_text(RENDER)
-    words = [blend, out, frames, *SIZE]
+    words = [blend, out, frames, *SIZE, samples, seed, tail]
     line = (
         [blender, "-B", script, *words]
         if os.path.basename(blender).startswith("python")

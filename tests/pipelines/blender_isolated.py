@@ -1,6 +1,6 @@
 """One lamp above a floor, or one material on a ball, by Cycles of this Blender and, exported, by our path tracer: ratios of the means.
 
-    build/peers/bpy/bin/python tests/pipelines/blender_isolated.py BIN_DIR [lamps] [balls] [part of a case's name]...
+    build/peers/bpy/bin/python tests/pipelines/blender_isolated.py BIN_DIR [lamps] [balls] [planes] [part of a case's name]...
 
 A ball is seen as a whole, its outermost .06 aside. Cycles with caustics, no clamping, no denoising. Blender 4.2 or later.
 """
@@ -93,6 +93,24 @@ BALLS = {
 }
 
 
+# A white matte surface below a smooth reflection in the light of a sun, or a black one in even light; degrees between
+# the normal and the sun, or the eye. The expected ratio is a closed form: see expected().
+PLANES = {
+    **{f"matte below a reflection, sun at {angle} degrees": ("sun", angle) for angle in (0, 45, 60, 75)},
+    **{f"black, seen at {angle} degrees": ("eye", angle) for angle in (0, 45, 60, 75)},
+}
+
+
+def expected(kind, angle):
+    """Ours / Cycles. glTF: Schlick's rise from .04, and a matte part that loses what is reflected at both directions
+    (lib/material/bsdf.h). Cycles: Fresnel's equations, and a matte part that loses what is reflected towards the eye."""
+    c = math.cos(math.radians(angle))
+    g = math.sqrt(1.5**2 - 1 + c * c)
+    fresnel = ((g - c) / (g + c)) ** 2 / 2 * (1 + ((c * (g + c) - 1) / (c * (g - c) + 1)) ** 2)
+    schlick = 0.04 + 0.96 * (1 - c) ** 5
+    return schlick / fresnel if kind == "eye" else (1 - schlick) / (1 - (20 * 0.04 + 1) / 21)
+
+
 def put(scene, data, place, turn=(0, 0, 0)):
     thing = bpy.data.objects.new(data.name, data)
     thing.location, thing.rotation_euler = place, turn
@@ -161,6 +179,13 @@ def lamp_scene(kind, values):
     return scene, 0, "0,0,0"
 
 
+def even(scene, light):
+    scene.world = bpy.data.worlds.new("World")
+    if scene.world.node_tree is None:
+        scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (light, light, light, 1)
+
+
 def ball_scene(kind, values):
     scene = start(48)
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=1)
@@ -168,17 +193,33 @@ def ball_scene(kind, values):
     for face in ball.data.polygons:
         face.use_smooth = True
     dressed(ball, kind, values)
-    scene.world = bpy.data.worlds.new("World")
-    if scene.world.node_tree is None:
-        scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (.2, .2, .2, 1)
+    even(scene, .2)
     lamp = bpy.data.lights.new("Lamp", "AREA")
     lamp.energy, lamp.size = 0 if "even" in values else 400, 3
     put(scene, lamp, (2, -4, 4), (.84, 0, .45))
     lens = bpy.data.cameras.new("Camera")
     lens.type, lens.ortho_scale = "ORTHO", 2
     scene.camera = put(scene, lens, (0, -5, 0), (math.pi / 2, 0, 0))
-    return scene, 16, ".2,.2,.2"
+    return scene, 64, ".2,.2,.2"     # ours has no limit; 16 bounces take 8 % from a shell of rough glass
+
+
+def plane_scene(kind, angle):
+    scene = start(8)
+    bpy.ops.mesh.primitive_plane_add(size=2000)
+    grey = 0.8 if kind == "sun" else 0
+    dressed(bpy.context.object, PRINCIPLED, {"Base Color": (grey, grey, grey, 1), "Roughness": 0})
+    turn = math.radians(angle)
+    if kind == "sun":
+        lamp = bpy.data.lights.new("Lamp", "SUN")
+        lamp.energy, lamp.angle = 3, 0
+        put(scene, lamp, (0, 0, 5), (0, turn, 0))
+        turn = 0
+    else:
+        even(scene, 1)
+    lens = bpy.data.cameras.new("Camera")
+    lens.type, lens.ortho_scale = "ORTHO", 1
+    scene.camera = put(scene, lens, (0, -5 * math.sin(turn), 5 * math.cos(turn)), (turn, 0, 0))
+    return scene, 8, "0,0,0" if kind == "sun" else "1,1,1"
 
 
 def compare(name, scene, bounces, sky, binaries, folder):
@@ -230,7 +271,8 @@ def compare(name, scene, bounces, sky, binaries, folder):
     print(
         f"RATIO {name:44} "
         + " ".join(f"{x / y:.3f}" for x, y in zip(*means))
-        + f"   green: ours {means[0][1]:.4f}, Cycles {means[1][1]:.4f}",
+        + f"   green: ours {means[0][1]:.4f}, Cycles {means[1][1]:.4f}"
+        + (f"   expected {expected(*PLANES[name]):.3f}" if name in PLANES else ""),
         flush=True,
     )
 
@@ -238,7 +280,7 @@ def compare(name, scene, bounces, sky, binaries, folder):
 def main():
     binaries, *words = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
-        for word, cases, make in (("lamps", LAMPS, lamp_scene), ("balls", BALLS, ball_scene)):
+        for word, cases, make in (("lamps", LAMPS, lamp_scene), ("balls", BALLS, ball_scene), ("planes", PLANES, plane_scene)):
             for name, (kind, values) in cases.items():
                 if words and word not in words and not any(w in name for w in words):
                     continue

@@ -200,6 +200,7 @@ PROPERTIES = {
     "world strength": background("Strength", 3),
     "camera markers": marker,
     "view exposure": lambda s: setattr(s.view_settings, "exposure", 1.5),
+    "view gamma": lambda s: setattr(s.view_settings, "gamma", 1.2),
     "view transform": lambda s: setattr(s.view_settings, "view_transform", "Raw"),
 }
 NOTHING_CHANGES = {"a modifier off in the render", "view transform"}   # the second: a hint of the base goes

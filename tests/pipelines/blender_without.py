@@ -1,18 +1,22 @@
 """A .blend without some of what is in it: to find what a difference between two renderers comes from.
 
-    build/peers/bpy/bin/python tests/bench/blender_without.py SHOT.blend OUT.blend WORD...
+    build/peers/bpy/bin/python tests/pipelines/blender_without.py SHOT.blend OUT.blend WORD...
 
 coat, sheen, film, anisotropy, subsurface: their weights 0.  smoke: domains with only a volume.  cards: holdouts and shadow catchers.
-hair: hair systems.  sun: sun lamps.  glass: panes of clear glass.  spread: area lamps shine to all sides.  sizes: radius of spots and
+hair: hair systems.  sun, points, spots, areas: lamps of this kind.  world: its light.
+specular: the reflection of Principled.  glass: panes of clear glass.  spread: area lamps shine to all sides.  sizes: radius of spots and
 points, angle of suns 0.  metallic: Metallic below 1 becomes 0.  frost: transmission of rough Principled becomes 0.  bumps: no Bump node.
 translucent: Translucent BSDF becomes Diffuse.  mixed: mixtures of a matte and a glossy shader become the matte one.
+close:NAME: the first frame alone, by a lens that shows this object alone from where the camera stands.
 """
 
 import math
 import sys
 
 import bpy
+import mathutils
 
+LAMPS = {"sun": "SUN", "points": "POINT", "spots": "SPOT", "areas": "AREA"}
 WEIGHTS = {
     "coat": "Coat Weight",
     "sheen": "Sheen Weight",
@@ -59,6 +63,24 @@ def replace(material, node, other):
         links.new(other.outputs[0], link.to_socket)
 
 
+def look_closely(scene, name):
+    scene.frame_end = scene.frame_start
+    scene.frame_set(scene.frame_start)
+    thing = scene.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    corners = [thing.matrix_world @ mathutils.Vector(corner) for corner in thing.bound_box]
+    middle = sum(corners, mathutils.Vector()) / 8
+    radius = max((corner - middle).length for corner in corners)
+    place = scene.camera.matrix_world.translation
+    eye = bpy.data.objects.new("close", bpy.data.cameras.new("close"))
+    eye.location = place
+    eye.rotation_euler = (middle - place).to_track_quat("-Z", "Y").to_euler()
+    eye.data.angle = 2 * math.asin(radius / (middle - place).length)
+    eye.data.clip_start = .01
+    scene.collection.objects.link(eye)
+    scene.camera = eye
+    scene.render.resolution_x = scene.render.resolution_y
+
+
 def take_out(word):
     objects = bpy.context.scene.objects
     if word in WEIGHTS:
@@ -72,8 +94,15 @@ def take_out(word):
         for thing in objects:
             for modifier in [m for m in thing.modifiers if m.type == "PARTICLE_SYSTEM"]:
                 thing.modifiers.remove(modifier)
-    elif word == "sun":
-        remove(o for o in objects if o.type == "LIGHT" and o.data.type == "SUN")
+    elif word in LAMPS:
+        remove(o for o in bpy.data.objects if o.type == "LIGHT" and o.data.type == LAMPS[word])
+    elif word == "world":
+        bpy.context.scene.world = None
+    elif word == "specular":
+        for _, node in shaders("BSDF_PRINCIPLED"):
+            node.inputs["Specular IOR Level"].default_value = 0
+    elif word.startswith("close:"):
+        look_closely(bpy.context.scene, word[6:])
     elif word == "glass":
         remove(o for o in objects if is_clear_glass(o))
     elif word == "spread":

@@ -31,7 +31,7 @@ done
 grep -q 'INFO\|Traceback' "$work/log" && bad "words that are not ours: $(grep -m1 'INFO\|Traceback' "$work/log")"
 [ "$(grep '^tempolux_export.py: ' "$work/log" | tail -3 | sed 's/^tempolux_export.py: //; s/:.*//' | tr '\n' ,)" = 'kept,baked,lost or changed,' ] ||
   bad "no summary of three lines: $(cat "$work/log")"
-line="make -f $PWD/Makefile.example SCENE=$work/shot.glb FRAMES=3-6 SIZE=1920x1080 OUT=$work/shot QUALITY=draft SKY=1,1.2,1.6 'TIME=--fps 30'"
+line="make -f $PWD/Makefile.example SCENE=$work/shot.glb FRAMES=3-6 SIZE=1920x1080 OUT=$work/shot QUALITY=draft EXPOSURE=-1.5 SKY=1,1.2,1.6 'TIME=--fps 30'"
 grep -qxF "$line" "$work/log" || bad "does not print $line: $(grep make "$work/log")"
 python3 - "$work/shot.glb" << 'END' || bad 'the file'
 import json, math, struct, sys
@@ -88,6 +88,45 @@ chord = 4 * .2 ** 3 / (6 * .2 ** 2)                 # Cauchy's 4 V / S of a cube
 assert near([more["KHR_materials_ior"]["ior"], more["KHR_materials_volume"]["thicknessFactor"]], [1.6, chord]), looks
 assert "KHR_materials_transmission" in looks["Sheet"][1] and "KHR_materials_volume" not in looks["Sheet"][1], looks
 assert "baseColorTexture" in looks["Noisy"][0], looks
+# Metallic .5: from in front it reflects the mean of .04 and the metal's colour; in even light its matte part returns half
+# of what a dielectric's returns. Schlick's rise returns (20 f + 1) / 21 over all angles.
+def all_angles(front):
+    return (20 * front + 1) / 21
+plain, more = looks["Half"]
+ior, tint = more["KHR_materials_ior"]["ior"], more["KHR_materials_specular"]["specularColorFactor"]
+front = [((ior - 1) / (ior + 1)) ** 2 * t for t in tint]
+assert plain["metallicFactor"] == 0 and near(front, [(.04 + c) / 2 for c in (.9, .3, .1)]), looks["Half"]
+below = [(1 - all_angles(max(front))) * c for c in plain["baseColorFactor"][:3]]
+assert near(below, [.5 * (1 - all_angles(.04)) * c for c in (.9, .3, .1)]), looks["Half"]
+# A quarter of a mirror of .8: the reflection is .2 at all angles; of the matte part .75 is seen, as .8 times what the file says.
+plain, more = looks["Glazed"]
+specular = more["KHR_materials_specular"]
+along, front = specular["specularFactor"], [.04 * specular["specularFactor"] * t for t in specular["specularColorFactor"]]
+assert plain["metallicFactor"] == 0 and near(front, (.2, .2, .2)) and near([along], [.2]), looks["Glazed"]
+assert near([.8 * c for c in plain["baseColorFactor"][:3]], [.75 * c for c in (.1, .4, .2)]), looks["Glazed"]
+wraps = {}
+for name in ("Once", "Thrice"):
+    texture = shot["materials"][shot["meshes"][named[name]["mesh"]]["primitives"][0]["material"]]["pbrMetallicRoughness"]["baseColorTexture"]
+    wraps[name] = shot["samplers"][shot["textures"][texture["index"]]["sampler"]]["wrapS"]
+assert wraps == {"Once": 33071, "Thrice": 10497}, wraps
+# Glass: no normal leans away from its triangle by more than 30 degrees; where the cylinder is round, normals stay smooth.
+part = shot["meshes"][named["Tumbler"]["mesh"]]["primitives"][0]
+def rows(index, size):
+    values = numbers(index)
+    return [values[k:k + size] for k in range(0, len(values), size)]
+points, normals = rows(part["attributes"]["POSITION"], 3), rows(part["attributes"]["NORMAL"], 3)
+view = shot["accessors"][part["indices"]]
+corners = struct.unpack_from(f"<{view['count']}{'H' if view['componentType'] == 5123 else 'I'}", binary,
+                             shot["bufferViews"][view["bufferView"]]["byteOffset"])
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+cosines = []
+for k in range(0, len(corners), 3):
+    a, b, c = (points[i] for i in corners[k:k + 3])
+    u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+    cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    cosines += [dot(cross, normals[i]) / math.sqrt(dot(cross, cross)) for i in corners[k:k + 3]]
+assert min(cosines) > math.cos(math.radians(30)) and min(cosines) < .999, (min(cosines), max(cosines))
 animated = [shot["nodes"][c["target"]["node"]]["name"] for a in shot["animations"] for c in a["channels"] if "node" in c["target"]]
 assert "Cube Matte" in animated and "Cube Chrome" not in animated, animated
 END

@@ -113,6 +113,36 @@ for name, kind, x in (("Domain", smoke, 3), ("Odd", odd, 4)):
     bpy.ops.mesh.primitive_cube_add(size=.5, location=(x, 2, 1))
     bpy.context.object.name = name
     bpy.context.object.data.materials.append(kind)
+# A metal by half; a quarter of a mirror above matte; a solid of glass that is smooth across its sharp edges.
+half, _ = material("Half", "ShaderNodeBsdfPrincipled", **{"Metallic": .5, "Base Color": (.9, .3, .1, 1)})
+glazed, mirror = material("Glazed", "ShaderNodeBsdfAnisotropic" if bpy.app.version >= (4, 0) else "ShaderNodeBsdfGlossy", Color=(.8, .8, .8, 1), Roughness=.1)
+tree = glazed.node_tree
+below, mixture = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeMixShader")
+below.inputs["Color"].default_value, mixture.inputs[0].default_value = (.1, .4, .2, 1), .25
+for k, node in ((1, below), (2, mirror)):
+    tree.links.new(node.outputs[0], mixture.inputs[k])
+tree.links.new(mixture.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+tumbler, _ = material("Tumbler", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0)
+for name, kind, x in (("Half", half, -1), ("Glazed", glazed, -1.4), ("Tumbler", tumbler, -1.8)):
+    bpy.ops.mesh.primitive_cylinder_add(vertices=16, radius=.1, depth=.2, location=(x, 2, 1))
+    bpy.context.object.name = name
+    bpy.context.object.data.materials.append(kind)
+    for face in bpy.context.object.data.polygons:
+        face.use_smooth = True
+# An image that one mesh shows once and another three times.
+shown, shader = material("Shown", "ShaderNodeBsdfPrincipled")
+texture = shown.node_tree.nodes.new("ShaderNodeTexImage")
+texture.image = bpy.data.images.new("Chequer", 8, 8)
+texture.image.pixels[:] = [k % 4 == 3 or (k // 4 % 8 + k // 32) % 2 for k in range(256)]
+texture.image.pack()
+shown.node_tree.links.new(texture.outputs[0], shader.inputs["Base Color"])
+for name, x, many in (("Once", 5, 1), ("Thrice", 6, 3)):
+    bpy.ops.mesh.primitive_plane_add(size=.2, location=(x, 2, 1))
+    bpy.context.object.name = name
+    bpy.context.object.data.materials.append(shown)
+    for corner in bpy.context.object.data.uv_layers.active.data:
+        corner.uv = [many * u for u in corner.uv]
+scene.view_settings.exposure = -1.5
 lamp = bpy.data.lights.new("Flicker", "POINT")
 lamp.shadow_soft_size = 0
 if hasattr(lamp, "exposure"):

@@ -52,6 +52,11 @@ cp "$source" "$scene"
 make_runs 'camera put back: what was made before is shown again' "$(same 0002 0003) $sheet"
 grep -q 'brightness steps.*look at' "$work/make.txt" || { echo 'FAILED: frames shown again: not said'; failed=1; }
 
+make_runs 'an exposure: previews alone' "$(same $all) $sheet" EXPOSURE=1.5
+"$bin/tempolux-info" --png "$work/stops.png" --exposure 1.5 "$work/out/frames/0002.exr" && cmp -s "$work/stops.png" "$work/out/frames/0002.png" ||
+  { echo 'FAILED: the preview has another exposure'; failed=1; }
+make_runs 'and the exposure that suits again' "$(same $all) $sheet"
+
 rm "$work/out/photons/0000-"*.photons "$work/out/cache/0001-"*.irradcache "$work/out/frames/0002.exr" "$work/out/frames/0003.png"
 make_runs 'files deleted: they come back, nothing else' "$(trace 0000) $(cache 0001) tempolux-info:frames/0003.png"
 [ -s "$work/out/frames/0002.exr" ] || { echo 'FAILED: a frame deleted is not back'; failed=1; }

@@ -34,7 +34,8 @@ def make_line(shot):
     width, height = picture_size(shot.scene.render)
     step = f"x{shot.scene.frame_step}" if shot.scene.frame_step > 1 else ""
     words = [f"SCENE={shot.path}", f"FRAMES={shot.first}-{shot.last}{step}", f"SIZE={width}x{height}",
-             f"OUT={os.path.splitext(shot.path)[0]}", "QUALITY=draft"]
+             f"OUT={os.path.splitext(shot.path)[0]}", "QUALITY=draft",
+             f"EXPOSURE={shot.scene.view_settings.exposure:.6g}"]
     if shot.sky:
         words.append("SKY=" + ",".join(f"{c:.6g}" for c in shot.sky))
     if abs(shot.rate() - 24) > 1e-6:

@@ -40,6 +40,8 @@ class Lamps:
             lost(Damage.LIGHT, item.label, "it casts shadows here")
         if getattr(getattr(lamp, "cycles", None), "is_portal", False):
             return
+        if all(float(state.power.max()) <= 0 for state in states.values()):
+            return                         # its shape would stand in the way of light, which it does not in Blender
         places = {frame: gltf.TO_GLTF @ place for frame, place in item.places.items()}
         self.notes.keep("lamps")
         if first.kind == "AREA" and first.spread < math.pi - 1e-3:

@@ -9,7 +9,8 @@ import numpy
 
 from .values import Source, follow, is_constant, pick, resolve
 
-WRAPS = {"REPEAT": 10497, "EXTEND": 33071, "CLIP": 33071, "MIRROR": 33648}
+CLAMP = 33071
+WRAPS = {"REPEAT": 10497, "EXTEND": CLAMP, "CLIP": CLAMP, "MIRROR": 33648}
 LINEAR_SPACES = ("Non-Color", "Linear", "Linear Rec.709", "Raw", "Generic Data")
 
 

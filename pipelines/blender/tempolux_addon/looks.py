@@ -138,7 +138,11 @@ def half_metal(look):
     front = 2 * as_number(look["level"]) * (.04 if look.get("old_specular") else ((ior - 1) / (ior + 1)) ** 2)
     reflected = tuple((1 - share) * min(1.0, front * t) + share * c for t, c in zip(as_tuple(look["tint"]), base))
     top = min(max(max(reflected), 1e-6), .99)
-    kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
+    if front == 0:                 # the metal part alone reflects, along the surface too
+        look["reflects"] = reflected, share
+        kept = (1 - share) / (1 - (20 * top + share) / 21)
+    else:
+        kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
     look.update(
         metallic=0.0,
         base=tuple(min(1.0, kept * c) for c in base),
@@ -175,11 +179,16 @@ def conductor(node, stack):
 
 
 def glass(node, stack):
-    return Look(
+    look = Look(
         transmission=1.0,
         normal=bent_normal(node, stack),
         **inputs(node, stack, base="Color", roughness="Roughness", ior="IOR"),
     )
+    if node.type == "BSDF_REFRACTION":
+        look.lose("its Refraction BSDF reflects here, too")
+    elif look["base"] != WHITE:
+        look.lose("the colour of its Glass BSDF tints what goes through, not what is reflected")
+    return look
 
 
 def simple(**fixed):
@@ -304,10 +313,13 @@ def coated(matte_look, mirror, reflectance):
 
 
 def glazed(matte_look, mirror, share):
-    """Matte below a mirror that takes the same share at all angles, or rises to it along the surface."""
+    """Matte below a mirror that takes the same share at all angles, or rises to it along the surface. In Blender the
+    matte part loses all of the mirror's share, here what the mirror reflects: its colour is darker by the quotient."""
     look = coated(matte_look, mirror, times(mirror["base"], share))
     front = as_tuple(times(mirror["base"], share))
-    look["reflects"] = front, max(front) if mirror.get("one_for_all_angles") else share
+    along = max(front) if mirror.get("one_for_all_angles") else share
+    look["reflects"] = front, along
+    look["base"] = times(look["base"], (1 - share) / max(1 - (20 * max(front) + along) / 21, 1e-6))
     return look
 
 

@@ -13,7 +13,7 @@ from .factors import (
     set_extensions,
     unit,
 )
-from .images import file_bytes, picture_of, pixels_of, png, resized, to_srgb
+from .images import CLAMP, file_bytes, picture_of, pixels_of, png, resized, to_srgb
 from .looks import fog_of
 from .notes import Damage
 from .values import Source, as_number, as_tuple, is_constant, pick, resolve, times
@@ -37,6 +37,11 @@ SINGLE = (
     "anisotropic_rotation",
 )  # no texture of these: a mean
 FLAT = 0.004  # scatter of a normal's two parts, as a map has them: a step of 8 bits, half a degree
+
+
+def in_unit(uv):
+    """Do these coordinates stay within the image, apart from rounding?"""
+    return bool(len(uv)) and uv.min() >= -1e-5 and uv.max() <= 1 + 1e-5
 
 
 def linked(look):
@@ -95,7 +100,7 @@ class Materials:
             solid > 0,
             own,
             slot if own else 0,
-            tuple(shape.uvs) if linked(look) else (),
+            tuple((name, in_unit(uv)) for name, uv in shape.uvs.items()) if linked(look) else (),
         )
         if key not in self.made:
             self.made[key] = self.make(material, look, volume, shape, topology, slot, solid)
@@ -237,7 +242,10 @@ class Maker:
         return name in self.layers or len([n for n in self.layers if n]) < 1
 
     def image(self, data, picture):
-        return self.document.texture(data, picture.wrap, picture.closest, picture.image.name)
+        """An image that the mesh shows once ends at its borders: coarse levels of a repeated one would mix in the other
+        side."""
+        once = not picture.transform and in_unit(self.shape.uvs[picture.uv or self.shape.render_uv])
+        return self.document.texture(data, CLAMP if once else picture.wrap, picture.closest, picture.image.name)
 
     def bake(self, what, value, kind="colour"):
         """Pixels of a bake, or of its mean, 1 x 1, where baking is off."""
@@ -300,7 +308,7 @@ class Maker:
             return
         pixels[..., :3] = to_srgb(pixels[..., :3])
         data = png(pixels if not is_constant(alpha) else pixels[..., :3])
-        pbr["baseColorTexture"] = self.info(self.document.texture(data, 33071, name=f"{self.name} colour"))
+        pbr["baseColorTexture"] = self.info(self.document.texture(data, CLAMP, name=f"{self.name} colour"))
 
     def base_image(self, picture, mask):
         one = picture or mask
@@ -349,7 +357,7 @@ class Maker:
             if pixels.shape[0] == 1:
                 pbr.update(roughnessFactor=unit(pixels[0, 0, 1]), metallicFactor=unit(pixels[0, 0, 2]))
                 return
-            info = self.info(self.document.texture(png(pixels), 33071, name=f"{self.name} roughness"))
+            info = self.info(self.document.texture(png(pixels), CLAMP, name=f"{self.name} roughness"))
             pbr.update(roughnessFactor=1.0, metallicFactor=1.0)
             pbr["metallicRoughnessTexture"] = info
             return
@@ -375,7 +383,7 @@ class Maker:
             self.baked[-1] = "bumps (flat to half a degree, left out)"
             return
         result["normalTexture"] = self.info(
-            self.document.texture(png(pixels[..., :3]), 33071, name=f"{self.name} bumps")
+            self.document.texture(png(pixels[..., :3]), CLAMP, name=f"{self.name} bumps")
         )
 
     def emission(self, result):
@@ -398,7 +406,7 @@ class Maker:
                 set_emission(result, tuple(float(c) for c in pixels[0, 0, :3]))
                 return
             texture = self.info(
-                self.document.texture(png(to_srgb(pixels[..., :3] / strength)), 33071, name=f"{self.name} emission")
+                self.document.texture(png(to_srgb(pixels[..., :3] / strength)), CLAMP, name=f"{self.name} emission")
             )
         result["emissiveFactor"], result["emissiveTexture"] = [1.0, 1.0, 1.0], texture
         extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": max(0.0, strength)}
@@ -414,7 +422,7 @@ class Maker:
             extension["transmissionFactor"] = unit(pixels[0, 0, 0])
         else:
             extension["transmissionTexture"] = self.info(
-                self.document.texture(png(pixels), 33071, name=f"{self.name} transmission")
+                self.document.texture(png(pixels), CLAMP, name=f"{self.name} transmission")
             )
 
 

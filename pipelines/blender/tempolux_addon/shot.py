@@ -146,16 +146,16 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
             self.notes.lost(
                 Damage.HINT,
                 "the view transform",
-                f"{view.view_transform} is not applied: previews are sRGB; compare the linear "
-                "EXR files through one transform",
+                f"{view.view_transform} is not applied: previews are sRGB (Standard) at the scene's exposure; compare "
+                "the linear EXR files through one transform",
             )
-        if abs(view.exposure) > 1e-6:
-            self.notes.lost(
-                Damage.HINT,
-                "the exposure",
-                f"{view.exposure:+g} stops are not in the frames; a preview as Blender shows it: "
-                f"tempolux-info FRAME.exr --png FRAME.png --exposure {view.exposure:g}",
-            )
+        shown = {
+            "look": view.look not in ("None", ""),
+            "gamma": abs(view.gamma - 1) > 1e-6,
+            "curves": view.use_curve_mapping,
+        }
+        for word in (word for word, used in shown.items() if used):
+            self.notes.lost(Damage.HINT, f"the view's {word}", "is not applied to the previews")
 
     def measure_bakes(self):
         """Pixels that a texture of each mesh needs, by its size and distance from the camera over the shot."""
