@@ -90,6 +90,7 @@ Rgb Bsdf::specular_albedo(float cos_o) const {
 }
 
 float Bsdf::diffuse_coupling(float cos_theta) const {
+  if (lobes_ == 0) return 1;
   float passed = 1;
   for (int i = 0; i < lobes_; ++i)
     passed *= visit(i, [&](const auto& lobe) { return let_through(lobe.albedo(cos_theta)); });
