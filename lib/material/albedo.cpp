@@ -21,13 +21,16 @@ AlbedoPair GgxAlbedo::at(float cos_theta) const {
   const float cos = std::clamp(cos_theta, 0.0f, 1.0f), sum = cos + alpha_;
   float across[4];
   const int column = cubic_weights(std::sqrt(std::min(1.0f, cos * (1 + alpha_) / sum)), albedo_table::kColumns, across);
-  float total = 0, m = 0;
+  float totals[4], ms[4];  // the compiler computes four rows at once, since rows lie side by side
+  const float(*e)[albedo_table::kRows] = &albedo_table::kTotal[column];
+  const float(*c)[albedo_table::kRows] = &albedo_table::kCosine[column];
   for (int r = 0; r < 4; ++r) {
-    const float* e = &albedo_table::kTotal[row_ + r][column];
-    const float* c = &albedo_table::kCosine[row_ + r][column];
-    total += weight_[r] * (across[0] * e[0] + across[1] * e[1] + across[2] * e[2] + across[3] * e[3]);
-    m += weight_[r] * (across[0] * c[0] + across[1] * c[1] + across[2] * c[2] + across[3] * c[3]);
+    const int i = row_ + r;
+    totals[r] = weight_[r] * (across[0] * e[0][i] + across[1] * e[1][i] + across[2] * e[2][i] + across[3] * e[3][i]);
+    ms[r] = weight_[r] * (across[0] * c[0][i] + across[1] * c[1][i] + across[2] * c[2][i] + across[3] * c[3][i]);
   }
+  float total = totals[0] + totals[1] + totals[2] + totals[3];
+  const float m = ms[0] + ms[1] + ms[2] + ms[3];
   total = std::clamp(total, 0.0f, 1.0f);
   const float k = std::clamp(1 - m * sum, 0.0f, 1.0f), k2 = k * k, b = total * k2 * k2 * k;
   return {total - b, b};

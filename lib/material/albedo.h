@@ -45,8 +45,8 @@ class GgxAlbedo {
 };
 
 namespace albedo_table {
-extern const float kTotal[kRows][kColumns];   ///< E at F = 1: a + b
-extern const float kCosine[kRows][kColumns];  ///< m, from which b = E (1 - m (cos + alpha))^5
+extern const float kTotal[kColumns][kRows];   ///< E at F = 1: a + b
+extern const float kCosine[kColumns][kRows];  ///< m, from which b = E (1 - m (cos + alpha))^5
 extern const float kMeanA[kRows], kMeanB[kRows];
 
 /// alpha and cosine of a position in the table: 0 is the first row or column, 1 the last.

@@ -3,30 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "lib/core/sampling.h"
-#include "lib/material/dielectric.h"
-#include "lib/material/ggx.h"
+#include <new>
 
 namespace tempolux {
 namespace {
-
-float power5(float x) { return x * x * x * x * x; }
-float smooth_step(float x) {
-  x = std::clamp(x, 0.0f, 1.0f);
-  return x * x * (3 - 2 * x);
-}
-/// If GGX loses less than this share of light on average, f_ms is dropped: it would be concentrated at grazing angles,
-/// and its cosine-distributed samples would have weights of more than ten times their mean. Between this loss and three
-/// times this loss f_ms is faded in.
-constexpr float kLeastLost = 0.01f;
-
-/// Schlick's Fresnel term, F0 + (F90 - F0) (1 - cos_h)^5 [1]. Schlick, "An Inexpensive BRDF Model for
-/// Physically-based Rendering", CGF 13(3), 1994.
-Rgb fresnel(Rgb f0, float f90, float cos_h) {
-  const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
-  return f0 * (1 - k) + Rgb(f90 * k);
-}
 
 /// F0 [1] of a dielectric in glTF: ((ior - 1) / (ior + 1))^2 times KHR_materials_specular's colour, at most 1, times
 /// its factor.
@@ -37,270 +17,237 @@ Rgb dielectric_f0(const MaterialValues& m) {
          m.specular;
 }
 
+/// The share of light that a lobe of this albedo lets through.
+float let_through(const LobeAlbedo& albedo) { return std::max(0.0f, 1 - max_component(albedo.total())); }
+
 }  // namespace
 
+// Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
 Bsdf::Bsdf(const MaterialValues& material, bool front) {
   if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
-  transmission_ = material.transmission * (1 - metallic);
-  if (transmission_ > 0) {
-    const float ior = material.ior > 0 ? material.ior : 1e4f;  // KHR_materials_ior: ior 0 reflects everything
-    transmission_tint_ = material.base_color;
-    eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
-    eta_ = material.thin_walled ? 1 : eta_reflected_;
-    // If the index is close to 1, light is hardly refracted, and the lobe may be narrower than float32 resolves. Such a
-    // boundary counts as smooth.
-    const float alpha = material.roughness * material.roughness;
-    if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
-      rough_.emplace(ior, alpha, material.thin_walled, front);
-      light_share_behind_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
-    }
-    pane_ = material.thin_walled && !rough_;
-    if (transmission_ >= 1) return;
+  if (material.transmission * (1 - metallic) > 0) {
+    glass_.emplace(material, front);
+    rest_ = 1 - glass_->share();
+    if (!glass_->is_delta()) ++spread_;
+    if (!(rest_ > 0)) return;
   }
-  rho_ = material.base_color * (1 - metallic);
-  lambert_ = metallic < 1;
-  diffuse_ = max_component(rho_) > 0;
-  f90_ = material.specular * (1 - metallic) + metallic;
-  if (!(f90_ > 0)) return;  // specular = metallic = 0: matte, and F0 is 0 as well
-  specular_ = true;
-  f0_ = dielectric_f0(material) * (1 - metallic) + material.base_color * metallic;
-  f0_max_ = max_component(f0_);
-  delta_ = material.roughness < kMirrorRoughness;
-  if (delta_) {
-    mean_albedo_ = (20 * f0_max_ + f90_) / 21;
-  } else {
-    alpha_ = material.roughness * material.roughness;
-    alpha2_ = alpha_ * alpha_;
-    albedo_ = GgxAlbedo(alpha_);
-    const AlbedoPair m = albedo_.mean();
-    const float e = m.a + m.b, lost = 1 - e;
-    mean_lost_ = lost;
-    if (const float fade = smooth_step((lost - kLeastLost) / (2 * kLeastLost)); fade > 0) {
-      for (int c = 0; c < 3; ++c) {
-        const float f = (20 * f0_[c] + f90_) / 21;
-        multiple_[c] = fade * f * f * e / (1 - f * lost) / lost;
-      }
-    }
-    mean_albedo_ = f0_max_ * m.a + f90_ * m.b + max_component(multiple_) * lost * lost;
+  has_lambert_ = metallic < 1;
+  // specular = metallic = 0: matte, and F0 is 0 as well
+  if (const float f90 = material.specular * (1 - metallic) + metallic; f90 > 0) {
+    const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
+    if (material.roughness < kMirrorRoughness) add<Mirror>(fresnel);
+    else add<Gloss>(fresnel, material.roughness * material.roughness, rest_);
   }
-  // If f_S reflects all light, the Lambert lobe receives none.
-  const float rest = 1 - mean_albedo_;
-  if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
-  else diffuse_ = false;
+  lambert_.add(material.base_color * (1 - metallic));
+  diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
 }
 
-Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
-  Reflection r;
-  if (!specular_) return r;
-  AlbedoPair e;
-  if (delta_) {
-    e.b = power5(std::clamp(1 - cos_theta, 0.0f, 1.0f));
-    e.a = 1 - e.b;
-  } else {
-    e = albedo_.at(cos_theta);
-    r.lost = std::max(0.0f, 1 - (e.a + e.b));
+/// Adds a lobe of event S below the others.
+template <class AnyLobe, class... Parameters>
+void Bsdf::add(const Parameters&... parameters) {
+  if (!lit_) return;
+  Layer& layer = stack_[lobes_++];
+  layer.coupling_scale = coupling_scale_;
+  const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
+  if (!AnyLobe::kDelta) ++spread_;
+  const float rest = 1 - lobe.mean_albedo();
+  if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
+  else lit_ = false;
+}
+
+/// function(lobe) of a lobe of the stack.
+template <class Function>
+auto Bsdf::visit(int i, Function&& function) const {
+  return std::visit(
+      [&](const auto& lobe) -> decltype(function(std::declval<const Mirror&>())) {
+        if constexpr (std::is_same_v<decltype(lobe), const std::monostate&>) __builtin_unreachable();
+        else return function(lobe);
+      },
+      stack_[i].lobe);
+}
+
+void Bsdf::look_up(float cos_theta, Direction& d) const {
+  for (int i = 0; i < lobes_; ++i) {
+    new (d.albedo + i) LobeAlbedo(visit(i, [&](const auto& lobe) { return lobe.albedo(cos_theta); }));
+    d.albedo[i].coupling = d.passed * stack_[i].coupling_scale;
+    d.passed *= let_through(d.albedo[i]);
   }
-  r.single = f0_ * e.a + Rgb(f90_ * e.b);
-  r.multiple = multiple_ * (mean_lost_ * r.lost);
-  return r;
+}
+
+/// The share of uniform light that stack_[i] reflects towards d through the lobes above it.
+Rgb Bsdf::reflected(int i, const Direction& d) const {
+  const Rgb total = d.albedo[i].total();
+  return i > 0 ? total * (d.albedo[i].coupling / stack_[i].coupling_scale) : total;
 }
 
 Rgb Bsdf::specular_albedo(float cos_o) const {
-  const Reflection r = reflection(cos_o);
-  return r.single + r.multiple;
+  Direction d;
+  look_up(cos_o, d);
+  Rgb sum(0.0f);
+  for (int i = 0; i < lobes_; ++i) sum += reflected(i, d);
+  return sum;
 }
 
-Rgb Bsdf::passed_straight(float cos_o) const {
-  if (!pane_ || !(cos_o > 0)) return Rgb(0.0f);
-  float cos_t;
-  return transmission_tint_ * (transmission_ * (1 - fresnel_dielectric(cos_o, eta_reflected_, cos_t)));
+float Bsdf::diffuse_coupling(float cos_theta) const {
+  if (lobes_ == 0) return 1;
+  float passed = 1;
+  for (int i = 0; i < lobes_; ++i)
+    passed *= visit(i, [&](const auto& lobe) { return let_through(lobe.albedo(cos_theta)); });
+  return passed * coupling_scale_;
 }
-
-/// c(w); 1 without a reflection above the Lambert lobe.
-float Bsdf::coupling(const Reflection& r) const {
-  return specular_ ? std::max(0.0f, 1 - max_component(r.single + r.multiple)) * coupling_scale_ : 1;
-}
-
-float Bsdf::diffuse_coupling(float cos_theta) const { return specular_ ? coupling(reflection(cos_theta)) : 1; }
 
 Rgb Bsdf::diffuse_reflectance(float cos_o) const {
-  return (specular_ ? rho_ * (diffuse_coupling(cos_o) / coupling_scale_) : rho_) * (1 - transmission_);
+  return (lobes_ > 0 ? lambert_.rho() * (diffuse_coupling(cos_o) / coupling_scale_) : lambert_.rho()) * rest_;
 }
 
 float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
 
 /// P(D): the Lambert lobe's share of the uniform light that all lobes together reflect towards wo.
-float Bsdf::diffuse_probability(const Reflection& r) const {
-  if (!diffuse_) return 0;
-  if (!specular_) return 1;
-  const Rgb s = r.single + r.multiple;
-  const float d = channel_mean(rho_) * std::max(0.0f, 1 - max_component(s)), total = d + channel_mean(s);
+float Bsdf::diffuse_probability(const Direction& wo) const {
+  if (!has_diffuse()) return 0;
+  if (lobes_ == 0) return 1;
+  const float d = channel_mean(lambert_.rho()) * wo.passed;
+  float total = d;
+  for (int i = 0; i < lobes_; ++i) total += channel_mean(reflected(i, wo));
   return total > 0 ? d / total : 0;
 }
 
 Rgb Bsdf::eval_diffuse(const Direction& wi, const Direction& wo) const {
-  if (!diffuse_ || !(wi.w.z > 0) || !(wo.w.z > 0)) return Rgb(0.0f);
-  if (!specular_) return rho_ * (kInvPi * (1 - transmission_));
-  return rho_ * (kInvPi * coupling(wi.reflected) * coupling(wo.reflected) * (1 - transmission_));
-}
-
-Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
-  const Vec3 h = normalize(wi + wo);
-  const float d = ggx::distribution(h, alpha2_) * ggx::visibility(wi.z, wo.z, alpha2_);
-  return fresnel(f0_, f90_, dot(wo, h)) * d + multiple_ * (kInvPi * lost_i * lost_o);
-}
-
-Rgb Bsdf::eval_opaque(const Direction& wi, const Direction& wo) const {
-  if (!specular_ || delta_ || !(wi.w.z > 0) || !(wo.w.z > 0)) return Rgb(0.0f);
-  return specular(wi.w, wo.w, wi.reflected.lost, wo.reflected.lost) * (1 - transmission_);
-}
-
-Rgb Bsdf::eval_rough(Vec3 wi, Vec3 wo) const {
-  if (wi.z == 0 || !(wo.z > 0)) return Rgb(0.0f);
-  const float f = transmission_ * rough_->eval(wi, wo);
-  return wi.z < 0 ? transmission_tint_ * f : Rgb(f);
+  if (!has_diffuse() || !(wi.w.z > 0) || !(wo.w.z > 0)) return Rgb(0.0f);
+  return lambert_.eval(coupling(wi), coupling(wo), rest_);
 }
 
 Rgb Bsdf::eval_specular(const Direction& wi, const Direction& wo) const {
-  return rough_ ? eval_opaque(wi, wo) + eval_rough(wi.w, wo.w) : eval_opaque(wi, wo);
-}
-
-bool Bsdf::draws_diffuse(const Direction& wo, float u_lobe) const {
-  if (!diffuse_ || !(wo.w.z > 0)) return false;
-  if (transmission_ > 0) {
-    if (u_lobe < transmission_) return false;
-    u_lobe = std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_));
+  Rgb f(0.0f);
+  if (spread_ == 0 || !(wo.w.z > 0)) return f;
+  if (wi.w.z > 0) {
+    for (int i = 0; i < lobes_; ++i)
+      f += visit(i, [&](const auto& lobe) { return lobe.eval(seen(wi, i), seen(wo, i)); });
   }
-  return u_lobe < diffuse_probability(wo.reflected);
+  return glass_ ? f + glass_->eval(wi.w, wo.w) : f;
 }
 
 float Bsdf::pdf_diffuse(Vec3 wi, const Direction& wo) const {
-  if (!diffuse_ || !(wi.z > 0) || !(wo.w.z > 0)) return 0;
-  return diffuse_probability(wo.reflected) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
+  if (!has_diffuse() || !(wi.z > 0) || !(wo.w.z > 0)) return 0;
+  return diffuse_probability(wo) * lambert_.pdf(wi) * rest_;
 }
 
-/// The share of event S's light that several microfacets reflect. [1]
-float Bsdf::multiple_share(const Reflection& r) {
-  const float multiple = channel_mean(r.multiple), total = multiple + channel_mean(r.single);
-  return total > 0 ? multiple / total : 0;
-}
-
-/// pdf of event S [1/sr] without P(S): visible normals for single reflection, the cosine for multiple reflection.
-float Bsdf::pdf_given_specular(Vec3 wi, Vec3 wo, const Reflection& r) const {
-  const float share = multiple_share(r);
-  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
-}
-
-float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
-  const bool gloss = specular_ && !delta_ && !(transmission_ > 0) && wi.z > 0 && wo.w.z > 0;
-  return gloss ? pdf_given_specular(wi, wo.w, wo.reflected) : std::numeric_limits<float>::infinity();
+/// pdf [1/sr] of wi under the condition that the stack draws event S; wi and wo are above the surface.
+float Bsdf::pdf_given_specular(Vec3 wi, const Direction& wo) const {
+  const auto pdf = [&](int i) { return visit(i, [&](const auto& lobe) { return lobe.pdf(wi, seen(wo, i)); }); };
+  if (lobes_ == 1) return pdf(0);
+  float sum = 0, total = 0;
+  for (int i = 0; i < lobes_; ++i) {
+    const float b = channel_mean(reflected(i, wo));
+    sum += b * pdf(i), total += b;
+  }
+  return total > 0 ? sum / total : 0;
 }
 
 float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {
-  float pdf = rough_ && wi.z != 0 && wo.w.z > 0 ? transmission_ * rough_->pdf(wi, wo.w) : 0;
-  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.w.z > 0)) return pdf;
-  return pdf +
-         (1 - diffuse_probability(wo.reflected)) * pdf_given_specular(wi, wo.w, wo.reflected) * (1 - transmission_);
+  if (spread_ == 0 || !(wo.w.z > 0)) return 0;
+  const float pdf = glass_ ? glass_->pdf(wi, wo.w) : 0;
+  if (lobes_ == 0 || !(wi.z > 0)) return pdf;
+  return pdf + (1 - diffuse_probability(wo)) * pdf_given_specular(wi, wo) * rest_;
 }
 
-void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
-  const float p = diffuse_probability(r);
-  s.diffuse = true;
-  s.wi = sample_hemisphere_cos(u);
-  s.pdf_solid_angle = p * pdf_hemisphere_cos(s.wi.z);
-  s.weight = rho_;  // f_D cos / pdf_D; c = 1
-  if (!specular_) return;
-  s.weight *= diffuse_coupling(s.wi.z) * coupling(r) / p;
-  if (!delta_) s.pdf_solid_angle += (1 - p) * pdf_given_specular(s.wi, wo, r);
+float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
+  const bool gloss = spread_ > 0 && !glass_ && wi.z > 0 && wo.w.z > 0;
+  return gloss ? pdf_given_specular(wi, wo) : std::numeric_limits<float>::infinity();
 }
 
-void Bsdf::sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const {
-  const float p = 1 - diffuse_probability(r);
-  if (delta_) {
-    s.delta = true;
-    s.wi = {-wo.x, -wo.y, wo.z};
-    s.weight = r.single / p;
-    s.pdf_solid_angle = p;
-    return;
+bool Bsdf::draws_diffuse(const Direction& wo, float u_lobe) const {
+  if (!has_diffuse() || !(wo.w.z > 0)) return false;
+  if (glass_) {
+    if (u_lobe < glass_->share()) return false;
+    u_lobe = stretched(u_lobe);
   }
-  const float share = multiple_share(r);
-  if (u_lobe < share) {
-    s.wi = sample_hemisphere_cos(u);
-  } else {
-    const Vec3 h = ggx::sample_visible_normal(wo, alpha_, u);
-    s.wi = normalize(h * (2 * dot(wo, h)) - wo);
-  }
-  if (!(s.wi.z > 0)) return;  // reflected into the surface: absorbed
-  const float pdf = p * pdf_given_specular(s.wi, wo, r);
-  s.weight = specular(s.wi, wo, reflection(s.wi.z).lost, r.lost) * (s.wi.z / pdf);
-  s.pdf_solid_angle = pdf + (1 - p) * pdf_hemisphere_cos(s.wi.z);
-}
-
-void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
-  float cos_t = 0;
-  const float reflectance = fresnel_dielectric(wo.z, eta_reflected_, cos_t);
-  s.delta = true;
-  s.weight = Rgb(1.0f);
-  if (u_lobe < reflectance) {
-    s.wi = {-wo.x, -wo.y, wo.z};
-    s.pdf_solid_angle = transmission_ * reflectance;
-    return;
-  }
-  s.transmitted = true;
-  s.straight = pane_;
-  s.wi = eta_ == 1 ? -wo : refract(wo, eta_, cos_t);
-  s.weight = transmission_tint_;
-  s.pdf_solid_angle = transmission_ * (1 - reflectance);
+  return u_lobe < diffuse_probability(wo);
 }
 
 float Bsdf::fork_probability(const Direction& wo) const {
   if (!(wo.w.z > 0)) return 1;
-  float cos_t;
-  return transmission_ > 0 ? fresnel_dielectric(wo.w.z, eta_reflected_, cos_t) : diffuse_probability(wo.reflected);
+  return glass_ ? glass_->reflectance(wo.w.z) : diffuse_probability(wo);
 }
 
-void Bsdf::sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const {
-  s.wi = rough_->sample(wo.w, u_lobe, u);
-  if (s.wi.z == 0) return;  // lost at the wrong side of the surface
-  s.transmitted = s.wi.z < 0;
+/// Draws a lobe of the stack in proportion to the light that it reflects, and stretches u_lobe to [0, 1). `chance` is
+/// multiplied by the lobe's probability.
+int Bsdf::choose(const Direction& wo, float& u_lobe, float& chance) const {
+  int i = 0;
+  if (lobes_ == 1) return i;
+  float total = 0;
+  for (int lobe = 0; lobe < lobes_; ++lobe) total += channel_mean(reflected(lobe, wo));
+  float share = channel_mean(reflected(0, wo)) / total;
+  while (i + 1 < lobes_ && u_lobe >= share) {
+    u_lobe -= share;
+    share = channel_mean(reflected(++i, wo)) / total;
+  }
+  u_lobe = std::min(kOneMinusEpsilon, u_lobe / share);
+  chance *= share;
+  return i;
+}
+
+/// Event D, drawn with probability p. Weight and pdf are those of the stack alone.
+void Bsdf::sample_diffuse(const Direction& wo, Vec2 u, float p, Sample& s) const {
+  s.diffuse = true;
+  s.wi = sample_hemisphere_cos(u);
+  s.pdf_solid_angle = p * lambert_.pdf(s.wi);
+  s.weight = lambert_.rho();  // f_D cos / pdf_D; c = 1
+  if (lobes_ == 0) return;
+  s.weight *= diffuse_coupling(s.wi.z) * coupling(wo) / p;
+  s.pdf_solid_angle += (1 - p) * pdf_given_specular(s.wi, wo);
+}
+
+/// Event S, drawn with probability 1 - p. The weight is that of one lobe; the pdf is that of this lobe and of event D.
+void Bsdf::sample_specular(const Direction& wo, float u_lobe, Vec2 u, float p, Sample& s) const {
+  const float event = 1 - p;
+  float chance = event;
+  const int i = choose(wo, u_lobe, chance);
+  if (!(chance > 0)) return;  // all lobes are black
+  visit(i, [&](const auto& lobe) {
+    const LobeDirection o = seen(wo, i);
+    lobe.sample(o, u_lobe, u, s);
+    if (!(s.pdf_solid_angle > 0)) return;
+    s.pdf_solid_angle *= chance;
+    if constexpr (std::decay_t<decltype(lobe)>::kDelta) {
+      s.weight = lobe.weight(o, o, chance, s.pdf_solid_angle);
+    } else {
+      const Direction wi = along(s.wi);
+      s.weight = lobe.weight(seen(wi, i), o, chance, s.pdf_solid_angle);
+      s.pdf_solid_angle += (1 - event) * lambert_.pdf(s.wi);
+    }
+  });
+}
+
+void Bsdf::sample_stack(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const {
+  const float p = diffuse_probability(wo);
+  if (u_lobe < p) sample_diffuse(wo, u, p, s);
+  else if (lobes_ > 0) sample_specular(wo, (u_lobe - p) / (1 - p), u, p, s);
+}
+
+/// Weighs a sample of event S by all lobes of that event.
+void Bsdf::weigh_by_all(const Direction& wo, Sample& s) const {
   const float pdf = pdf_specular(s.wi, wo);
-  if (!(pdf > 0)) return;
-  s.weight = eval_specular(along(s.wi), wo) * (std::abs(s.wi.z) / pdf);
-  s.pdf_solid_angle = pdf + pdf_diffuse(s.wi, wo);
+  s.weight = pdf > 0 ? eval_specular(along(s.wi), wo) * (std::abs(s.wi.z) / pdf) : Rgb(0.0f);
+  s.pdf_solid_angle = pdf > 0 ? pdf + pdf_diffuse(s.wi, wo) : 0;
 }
 
 Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
-  if (!(transmission_ > 0)) return sample_opaque(wo, u_lobe, u);
   Sample s;
   if (!(wo.w.z > 0)) return s;
-  if (u_lobe < transmission_) {
-    if (rough_) {
-      sample_rough(wo, u_lobe / transmission_, u, s);
-      return s;
-    }
-    sample_dielectric(wo.w, u_lobe / transmission_, s);
+  if (!glass_) {
+    sample_stack(wo, u_lobe, u, s);
+  } else if (u_lobe < glass_->share()) {
+    glass_->sample(wo.w, u_lobe / glass_->share(), u, s);
+    if (!s.delta && s.wi.z != 0) weigh_by_all(wo, s);
     return s;
+  } else {
+    sample_stack(wo, stretched(u_lobe), u, s);
+    s.pdf_solid_angle *= rest_;
+    if (s.diffuse) s.pdf_solid_angle += glass_->pdf(s.wi, wo.w);
   }
-  s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
-  s.pdf_solid_angle *= 1 - transmission_;
-  if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {  // the lobes of event S overlap
-    const float pdf = pdf_specular(s.wi, wo);
-    s.weight = pdf > 0 ? eval_specular(along(s.wi), wo) * (s.wi.z / pdf) : Rgb(0.0f);
-    s.pdf_solid_angle = pdf + pdf_diffuse(s.wi, wo);
-  } else if (rough_ && s.diffuse) {
-    s.pdf_solid_angle += transmission_ * rough_->pdf(s.wi, wo.w);
-  }
-  return s;
-}
-
-Bsdf::Sample Bsdf::sample_opaque(const Direction& wo, float u_lobe, Vec2 u) const {
-  Sample s;
-  if (!(wo.w.z > 0)) return s;
-  const Reflection& r = wo.reflected;
-  const float p = diffuse_probability(r);
-  if (u_lobe < p) sample_diffuse(wo.w, u, r, s);
-  else if (specular_ && max_component(r.single) > 0) sample_specular(wo.w, (u_lobe - p) / (1 - p), u, r, s);
+  if (spread_ > 1 && !s.diffuse && !s.delta && s.pdf_solid_angle > 0) weigh_by_all(wo, s);
   return s;
 }
 

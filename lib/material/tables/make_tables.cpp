@@ -33,19 +33,21 @@ void write_albedo(std::FILE* out) {
   using namespace albedo_table;
   const integrals::GaussLegendre rule(128), outer(64);
   std::vector<double> total, cosine, mean_a, mean_b;
-  for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
+  for (int column = 0; column < kColumns; ++column) {
+    for (int row = 0; row < kRows; ++row) {
       const integrals::Albedo e = node(row, column, rule);
       total.push_back(e.total);
       cosine.push_back(e.b);
     }
+  }
+  for (int row = 0; row < kRows; ++row) {
     const integrals::Albedo mean = integrals::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), outer, rule);
     mean_a.push_back(mean.total - mean.b);
     mean_b.push_back(mean.b);
   }
   std::fputs("namespace tempolux::albedo_table {\n", out);
-  define(out, "kTotal[kRows][kColumns]", {kRows, kColumns}, total);
-  define(out, "kCosine[kRows][kColumns]", {kRows, kColumns}, cosine);
+  define(out, "kTotal[kColumns][kRows]", {kColumns, kRows}, total);
+  define(out, "kCosine[kColumns][kRows]", {kColumns, kRows}, cosine);
   define(out, "kMeanA[kRows]", {kRows}, mean_a);
   define(out, "kMeanB[kRows]", {kRows}, mean_b);
   std::fputs("}  // namespace tempolux::albedo_table\n", out);

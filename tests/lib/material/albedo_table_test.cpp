@@ -26,8 +26,8 @@ TEST(GgxAlbedoTable, HoldsTheIntegrals) {
   for (int i = 0; i < kRows * kColumns; i += 7) {
     const int row = i / kColumns, column = i % kColumns;
     const Albedo e = node(row, column, rule);
-    EXPECT_NEAR(kTotal[row][column], e.total, 1e-5) << row << ' ' << column;
-    EXPECT_NEAR(kCosine[row][column], e.b, 2e-4) << row << ' ' << column;
+    EXPECT_NEAR(kTotal[column][row], e.total, 1e-5) << row << ' ' << column;
+    EXPECT_NEAR(kCosine[column][row], e.b, 2e-4) << row << ' ' << column;
   }
   for (int row = 0; row < kRows; row += 5) {
     const Albedo e = integrals::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), outer, GaussLegendre(64));

@@ -1,0 +1,46 @@
+// lib/material/dielectric_lobe.h -- the boundary of glass: reflects, and transmits to the other side.
+#pragma once
+
+#include <optional>
+
+#include "lib/material/lobe.h"
+#include "lib/material/rough_glass.h"
+#include "lib/scene/scene.h"
+
+namespace tempolux {
+
+/// Glass (KHR_materials_transmission), which is the share transmission (1 - metallic) of a surface. It reflects by the
+/// exact Fresnel equations and transmits the remaining light, tinted by base_color at each boundary. Light is refracted
+/// at a solid (index ior inside) and goes straight through a thin wall. The boundary is smooth below kMirrorRoughness,
+/// else rough_glass.h describes it.
+class DielectricLobe {
+ public:
+  /// front: wo is outside of a solid.
+  DielectricLobe(const MaterialValues& material, bool front);
+
+  float share() const { return share_; }
+  bool is_delta() const { return !rough_; }
+  float light_share_behind() const { return light_share_behind_; }  ///< Bsdf::light_share_behind()
+  /// The share [1] of light that a smooth boundary reflects towards cos_o > 0.
+  float reflectance(float cos_o) const;
+  /// Bsdf::passed_straight() for cos_o > 0.
+  Rgb passed_straight(float cos_o) const;
+
+  /// f [1/sr] with the share; wo.z > 0. 0 for a smooth boundary.
+  Rgb eval(Vec3 wi, Vec3 wo) const;
+  /// pdf [1/sr] with which sample() draws wi, times the share; wo.z > 0. 0 for a smooth boundary.
+  float pdf(Vec3 wi, Vec3 wo) const { return rough_ && wi.z != 0 ? share_ * rough_->pdf(wi, wo) : 0; }
+  /// Draws wi for wo.z > 0. A smooth boundary sets all of s, a rough one wi (0 if light is lost) and transmitted.
+  void sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const;
+
+ private:
+  float share_;
+  Rgb tint_;
+  float eta_reflected_;  ///< for the Fresnel term: index on wo's side / index on the other side
+  float eta_;            ///< for refraction: the same quotient, but 1 for a thin wall
+  float light_share_behind_ = 0;
+  bool pane_;                        ///< the wall is thin and smooth
+  std::optional<RoughGlass> rough_;  ///< empty: the boundary is smooth
+};
+
+}  // namespace tempolux

@@ -1,0 +1,97 @@
+#include "lib/material/opaque_lobes.h"
+
+#include <algorithm>
+
+#include "lib/material/ggx.h"
+
+namespace tempolux {
+namespace {
+
+float power5(float x) { return x * x * x * x * x; }
+float smooth_step(float x) {
+  x = std::clamp(x, 0.0f, 1.0f);
+  return x * x * (3 - 2 * x);
+}
+/// If GGX loses less than this share of light on average, f_ms is dropped: it would be concentrated at grazing angles,
+/// and its cosine-distributed samples would have weights of more than ten times their mean. Between this loss and three
+/// times this loss f_ms is faded in.
+constexpr float kLeastLost = 0.01f;
+
+/// The share of a gloss's light that several microfacets reflect. [1]
+float multiple_share(const LobeAlbedo& r) {
+  const float multiple = channel_mean(r.multiple), total = multiple + channel_mean(r.single);
+  return total > 0 ? multiple / total : 0;
+}
+
+}  // namespace
+
+Rgb Schlick::at(float cos_h) const {
+  const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
+  return f0 * (1 - k) + Rgb(f90 * k);
+}
+
+Rgb Schlick::mean() const { return (f0 * 20 + Rgb(f90)) / 21; }
+
+void Mirror::sample(LobeDirection wo, float, Vec2, LobeSample& s) const {
+  if (!(max_component(wo.albedo.single) > 0)) return;
+  s.delta = true;
+  s.wi = {-wo.w.x, -wo.w.y, wo.w.z};
+  s.pdf_solid_angle = 1;
+}
+
+Rgb Mirror::weight(LobeDirection wi, LobeDirection wo, float chance, float) const {
+  return wo.albedo.single * (wi.albedo.coupling * wo.albedo.coupling) / chance;
+}
+
+Gloss::Gloss(const Schlick& fresnel, float alpha, float share)
+    : fresnel_(fresnel), share_(share), alpha_(alpha), alpha2_(alpha * alpha), albedo_(alpha) {
+  const AlbedoPair m = albedo_.mean();
+  const float e = m.a + m.b;
+  mean_lost_ = 1 - e;
+  if (const float fade = smooth_step((mean_lost_ - kLeastLost) / (2 * kLeastLost)); fade > 0) {
+    const Rgb mean = fresnel_.mean();
+    for (int c = 0; c < 3; ++c) multiple_[c] = fade * mean[c] * mean[c] * e / (1 - mean[c] * mean_lost_) / mean_lost_;
+  }
+  mean_albedo_ =
+      max_component(fresnel_.f0) * m.a + fresnel_.f90 * m.b + max_component(multiple_) * mean_lost_ * mean_lost_;
+}
+
+LobeAlbedo Gloss::albedo(float cos_theta) const {
+  const AlbedoPair e = albedo_.at(cos_theta);
+  const float lost = std::max(0.0f, 1 - (e.a + e.b));
+  return {fresnel_.f0 * e.a + Rgb(fresnel_.f90 * e.b), multiple_ * (mean_lost_ * lost), lost};
+}
+
+/// f [1/sr] without share and coupling.
+Rgb Gloss::f(LobeDirection wi, LobeDirection wo) const {
+  const Vec3 h = normalize(wi.w + wo.w);
+  const float d = ggx::distribution(h, alpha2_) * ggx::visibility(wi.w.z, wo.w.z, alpha2_);
+  return fresnel_.at(dot(wo.w, h)) * d + multiple_ * (kInvPi * wi.albedo.lost * wo.albedo.lost);
+}
+
+Rgb Gloss::eval(LobeDirection wi, LobeDirection wo) const {
+  return f(wi, wo) * (wi.albedo.coupling * wo.albedo.coupling * share_);
+}
+
+/// Visible normals for single reflection, the cosine for multiple reflection.
+float Gloss::pdf(Vec3 wi, LobeDirection wo) const {
+  const float share = multiple_share(wo.albedo);
+  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo.w), wo.w.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
+}
+
+void Gloss::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const {
+  if (!(max_component(wo.albedo.single) > 0)) return;
+  if (u_lobe < multiple_share(wo.albedo)) {
+    s.wi = sample_hemisphere_cos(u);
+  } else {
+    const Vec3 h = ggx::sample_visible_normal(wo.w, alpha_, u);
+    s.wi = normalize(h * (2 * dot(wo.w, h)) - wo.w);
+  }
+  if (s.wi.z > 0) s.pdf_solid_angle = pdf(s.wi, wo);  // else reflected into the surface: absorbed
+}
+
+Rgb Gloss::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {
+  return f(wi, wo) * (wi.albedo.coupling * wo.albedo.coupling * (wi.w.z / pdf));
+}
+
+}  // namespace tempolux
