@@ -117,6 +117,7 @@ class RadsamplesDigest {
  public:
   RadsamplesDigest();
   ~RadsamplesDigest();
+  /// Adds the samples of further records, in the order of the file, and their anchors.
   void add(std::span<const RadianceSample> samples, std::span<const std::uint32_t> anchors);
   /// The digest after all samples were added; the samples in `head` are not read.
   std::string of(const RadsamplesFile& head) const;

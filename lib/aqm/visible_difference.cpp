@@ -124,6 +124,7 @@ FourierArray<float> channel_terms(const ChannelGrid& grid, ChannelName name, con
       // The picture with the weaker contrast masks.
       const float mask = gains[to] * std::sqrt(std::min(std::norm(a), std::norm(b)));
       const float ratio = difference / elevation(mask, slope);
+      static_assert(kPsychometricSlope == 3.5);
       terms[to] = ratio * ratio * ratio * std::sqrt(ratio);
     }
   return terms;

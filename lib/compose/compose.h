@@ -36,6 +36,7 @@ class MediaLight {
   /// Radiance per length that scattering adds towards the eye [W/m^3/sr]: the sum over the media of sigma_s fluence /
   /// (4 pi), of the light that photons estimate.
   Rgb scattered(Vec3 point) const;
+  /// How the light of media with this g is divided between photons and rays; g must be that of a medium of the frame.
   const PhaseShare& share(float g) const;
   /// True if rays estimate a share of any medium's light.
   bool has_rays() const;

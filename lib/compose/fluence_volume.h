@@ -63,6 +63,7 @@ class FluenceVolume {
   FluenceVolume() = default;
   /// `width`: standard deviation of the Gaussian, cells; 0: so that about kPhotonsInFilter photons count.
   FluenceVolume(const FluenceSums& sums, float width);
+  /// Filtered fluence [W/m^2] at a point, scene space.
   Rgb at(Vec3 point) const;
   float width() const { return width_; }  ///< cells: the width that was used, given or automatic
 

@@ -23,6 +23,7 @@ struct Affine {
     const Vec3d v = Vec3d{dot(c0, n), dot(c1, n), dot(c2, n)};
     return determinant() < 0 ? -v : v;
   }
+  /// Volume of the transformed unit cube, negative if the transform mirrors.
   double determinant() const { return dot(row[0], cross(row[1], row[2])); }
 
   friend Affine operator*(const Affine& a, const Affine& b) {

@@ -23,7 +23,7 @@ struct CompressionFacts {
   std::int32_t lines;       ///< per chunk
   std::uint64_t expansion;  ///< largest number of bytes of samples from one byte of the file
 };
-/// By the compression's number in the file.
+/// The index is the compression's number in the file.
 constexpr std::array<CompressionFacts, 10> kCompressions{
     {{1, 1}, {1, 64}, {1, 1032}, {16, 1032}, {32, 410}, {16, 1376}, {32, 11}, {32, 11}, {32, 66048}, {256, 66048}}};
 

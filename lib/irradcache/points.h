@@ -25,7 +25,7 @@ struct IrradiancePoint {
   Rgb direct{0.0f};          ///< by light sampling (paths L D)
   Rgb caustic{0.0f};         ///< by density estimation (paths L S+ D)
   Rgb indirect{0.0f};        ///< by density estimation: all other paths
-  /// A number with a random sign whose mean square is the variance of caustic + indirect (path_signs.h); 0: unknown
+  /// A random number of mean 0 whose mean square is the variance of caustic + indirect (path_signs.h). 0: unknown.
   Rgb noise{0.0f};
   Rgb total() const { return direct + caustic + indirect; }
 };

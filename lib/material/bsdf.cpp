@@ -130,12 +130,14 @@ Rgb Bsdf::eval_specular(const Direction& wi, const Direction& wo) const {
 
 float Bsdf::pdf_diffuse(Vec3 wi, const Direction& wo) const {
   if (!has_diffuse() || !(wi.z > 0) || !(wo.w.z > 0)) return 0;
-  return diffuse_probability(wo) * lambert_.pdf(wi) * rest_;
+  return diffuse_probability(wo) * lambert_.pdf_solid_angle(wi) * rest_;
 }
 
 /// pdf [1/sr] of wi under the condition that the stack draws event S; wi and wo are above the surface.
 float Bsdf::pdf_given_specular(Vec3 wi, const Direction& wo) const {
-  const auto pdf = [&](int i) { return visit(i, [&](const auto& lobe) { return lobe.pdf(wi, seen(wo, i)); }); };
+  const auto pdf = [&](int i) {
+    return visit(i, [&](const auto& lobe) { return lobe.pdf_solid_angle(wi, seen(wo, i)); });
+  };
   if (lobes_ == 1) return pdf(0);
   float sum = 0, total = 0;
   for (int i = 0; i < lobes_; ++i) {
@@ -147,7 +149,7 @@ float Bsdf::pdf_given_specular(Vec3 wi, const Direction& wo) const {
 
 float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {
   if (spread_ == 0 || !(wo.w.z > 0)) return 0;
-  const float pdf = glass_ ? glass_->pdf(wi, wo.w) : 0;
+  const float pdf = glass_ ? glass_->pdf_solid_angle(wi, wo.w) : 0;
   if (lobes_ == 0 || !(wi.z > 0)) return pdf;
   return pdf + (1 - diffuse_probability(wo)) * pdf_given_specular(wi, wo) * rest_;
 }
@@ -192,7 +194,7 @@ int Bsdf::choose(const Direction& wo, float& u_lobe, float& chance) const {
 void Bsdf::sample_diffuse(const Direction& wo, Vec2 u, float p, Sample& s) const {
   s.diffuse = true;
   s.wi = sample_hemisphere_cos(u);
-  s.pdf_solid_angle = p * lambert_.pdf(s.wi);
+  s.pdf_solid_angle = p * lambert_.pdf_solid_angle(s.wi);
   s.weight = lambert_.rho();  // f_D cos / pdf_D; c = 1
   if (lobes_ == 0) return;
   s.weight *= diffuse_coupling(s.wi.z) * coupling(wo) / p;
@@ -215,7 +217,7 @@ void Bsdf::sample_specular(const Direction& wo, float u_lobe, Vec2 u, float p, S
     } else {
       const Direction wi = along(s.wi);
       s.weight = lobe.weight(seen(wi, i), o, chance, s.pdf_solid_angle);
-      s.pdf_solid_angle += (1 - event) * lambert_.pdf(s.wi);
+      s.pdf_solid_angle += (1 - event) * lambert_.pdf_solid_angle(s.wi);
     }
   });
 }
@@ -245,7 +247,7 @@ Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
   } else {
     sample_stack(wo, stretched(u_lobe), u, s);
     s.pdf_solid_angle *= rest_;
-    if (s.diffuse) s.pdf_solid_angle += glass_->pdf(s.wi, wo.w);
+    if (s.diffuse) s.pdf_solid_angle += glass_->pdf_solid_angle(s.wi, wo.w);
   }
   if (spread_ > 1 && !s.diffuse && !s.delta && s.pdf_solid_angle > 0) weigh_by_all(wo, s);
   return s;

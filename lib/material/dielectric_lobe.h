@@ -29,7 +29,9 @@ class DielectricLobe {
   /// f [1/sr] with the share; wo.z > 0. 0 for a smooth boundary.
   Rgb eval(Vec3 wi, Vec3 wo) const;
   /// pdf [1/sr] with which sample() draws wi, times the share; wo.z > 0. 0 for a smooth boundary.
-  float pdf(Vec3 wi, Vec3 wo) const { return rough_ && wi.z != 0 ? share_ * rough_->pdf(wi, wo) : 0; }
+  float pdf_solid_angle(Vec3 wi, Vec3 wo) const {
+    return rough_ && wi.z != 0 ? share_ * rough_->pdf_solid_angle(wi, wo) : 0;
+  }
   /// Draws wi for wo.z > 0. A smooth boundary sets all of s, a rough one wi (0 if light is lost) and transmitted.
   void sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const;
 

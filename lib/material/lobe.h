@@ -31,14 +31,14 @@ struct LobeSample {
 
 // A lobe of event S is a class with these functions. Bsdf calls them only for wi and wo on the side z > 0.
 //
-//   static constexpr bool kDelta         true for a mirror: eval() and pdf() return 0
+//   static constexpr bool kDelta         true for a mirror: eval() and pdf_solid_angle() return 0
 //   float mean_albedo() const            cosine-weighted mean of the albedo [1], in its largest channel
 //   LobeAlbedo albedo(float cos) const
 //   Rgb eval(wi, wo) const               f [1/sr], with the lobe's share and the coupling to the lobes above
-//   float pdf(Vec3 wi, wo) const         pdf with which sample() draws wi [1/sr]
+//   float pdf_solid_angle(Vec3 wi, wo) const         pdf with which sample() draws wi [1/sr]
 //   void sample(wo, float u_lobe, Vec2 u, LobeSample& s) const
-//                                        sets s.wi, s.delta, s.pdf_solid_angle: pdf(wi), 1 if delta, 0 if nothing is
-//                                        reflected
+//                                        sets s.wi, s.delta, s.pdf_solid_angle: pdf_solid_angle(wi), 1 if delta, 0 if
+//                                        nothing is reflected
 //   Rgb weight(wi, wo, float chance, float pdf) const
 //                                        f cos / pdf of a sample [1], without the lobe's share. The lobe is drawn with
 //                                        the probability `chance`, which `pdf` includes.

@@ -74,7 +74,7 @@ Rgb Gloss::eval(LobeDirection wi, LobeDirection wo) const {
 }
 
 /// Visible normals for single reflection, the cosine for multiple reflection.
-float Gloss::pdf(Vec3 wi, LobeDirection wo) const {
+float Gloss::pdf_solid_angle(Vec3 wi, LobeDirection wo) const {
   const float share = multiple_share(wo.albedo);
   return (1 - share) * ggx::pdf_reflected(normalize(wi + wo.w), wo.w.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
 }
@@ -87,7 +87,7 @@ void Gloss::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const 
     const Vec3 h = ggx::sample_visible_normal(wo.w, alpha_, u);
     s.wi = normalize(h * (2 * dot(wo.w, h)) - wo.w);
   }
-  if (s.wi.z > 0) s.pdf_solid_angle = pdf(s.wi, wo);  // else reflected into the surface: absorbed
+  if (s.wi.z > 0) s.pdf_solid_angle = pdf_solid_angle(s.wi, wo);  // else reflected into the surface: absorbed
 }
 
 Rgb Gloss::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {

@@ -15,7 +15,7 @@ class Lambert {
   Rgb eval(float coupling_i, float coupling_o, float share) const {
     return rho_ * (kInvPi * coupling_i * coupling_o * share);
   }
-  float pdf(Vec3 wi) const { return pdf_hemisphere_cos(wi.z); }
+  float pdf_solid_angle(Vec3 wi) const { return pdf_hemisphere_cos(wi.z); }
 
  private:
   Rgb rho_{0.0f};
@@ -39,7 +39,7 @@ class Mirror {
   float mean_albedo() const { return max_component(fresnel_.mean()); }
   LobeAlbedo albedo(float cos_theta) const { return {.single = fresnel_.at(cos_theta)}; }
   Rgb eval(LobeDirection, LobeDirection) const { return Rgb(0.0f); }
-  float pdf(Vec3, LobeDirection) const { return 0; }
+  float pdf_solid_angle(Vec3, LobeDirection) const { return 0; }
   void sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const;
   Rgb weight(LobeDirection wi, LobeDirection wo, float chance, float pdf) const;
 
@@ -63,7 +63,7 @@ class Gloss {
   float mean_albedo() const { return mean_albedo_; }
   LobeAlbedo albedo(float cos_theta) const;
   Rgb eval(LobeDirection wi, LobeDirection wo) const;
-  float pdf(Vec3 wi, LobeDirection wo) const;
+  float pdf_solid_angle(Vec3 wi, LobeDirection wo) const;
   void sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const;
   Rgb weight(LobeDirection wi, LobeDirection wo, float chance, float pdf) const;
 

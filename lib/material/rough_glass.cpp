@@ -51,7 +51,7 @@ float RoughGlass::mean_loss(bool behind) const {
 
 /// pdf [1/sr] of a direction on one side that sample() draws for f_ms: cos_i = sqrt(spread^2 ((1 + 1/spread^2)^u - 1))
 /// for u in [0, 1), with uniform azimuth.
-float RoughGlass::multiple_pdf(float cos_i) const {
+float RoughGlass::multiple_pdf_solid_angle(float cos_i) const {
   return cos_i * kInvPi / ((cos_i * cos_i + spread2_) * log_spread_);
 }
 
@@ -84,9 +84,9 @@ float RoughGlass::eval(Vec3 wi, Vec3 wo) const {
   return single(wi, wo).f + share * kInvPi * loss(behind, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(behind);
 }
 
-float RoughGlass::pdf(Vec3 wi, Vec3 wo) const {
+float RoughGlass::pdf_solid_angle(Vec3 wi, Vec3 wo) const {
   const float several = loss(false, wo.z), share = wi.z < 0 ? share_behind_ : 1 - share_behind_;
-  return (1 - several) * single(wi, wo).pdf + several * share * multiple_pdf(std::abs(wi.z));
+  return (1 - several) * single(wi, wo).pdf_solid_angle + several * share * multiple_pdf_solid_angle(std::abs(wi.z));
 }
 
 Vec3 RoughGlass::sample(Vec3 wo, float u_lobe, Vec2 u) const {

@@ -32,8 +32,8 @@ class RoughGlass {
   /// thin wall.
   RoughGlass(float index, float alpha, bool thin, bool outside);
 
-  float eval(Vec3 wi, Vec3 wo) const;  ///< f [1/sr], without a tint
-  float pdf(Vec3 wi, Vec3 wo) const;   ///< pdf with which sample() draws wi [1/sr]
+  float eval(Vec3 wi, Vec3 wo) const;             ///< f [1/sr], without a tint
+  float pdf_solid_angle(Vec3 wi, Vec3 wo) const;  ///< pdf with which sample() draws wi [1/sr]
   /// Draws a direction wi above or below the surface; all numbers are in [0, 1). The weight of the sample is eval
   /// |cos_i| / pdf. If wi.z = 0 the weight is 0: a microfacet has sent light to the wrong side of the surface.
   Vec3 sample(Vec3 wo, float u_lobe, Vec2 u) const;
@@ -41,12 +41,12 @@ class RoughGlass {
  private:
   /// For two directions, f of single scattering [1/sr], and the pdf of wi by visible normals [1/sr].
   struct Pair {
-    float f = 0, pdf = 0;
+    float f = 0, pdf_solid_angle = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;
   float loss(bool behind, float cos_theta) const;
   float mean_loss(bool behind) const;
-  float multiple_pdf(float cos_i) const;
+  float multiple_pdf_solid_angle(float cos_i) const;
 
   GlassLoss loss_;  ///< for a solid
   GgxAlbedo wall_;  ///< for a thin wall: the albedo of a mirror
@@ -55,7 +55,7 @@ class RoughGlass {
   bool thin_;
   int side_;                    ///< side of wo: 0 outside, 1 inside
   float share_behind_;          ///< share of f_ms on the other side
-  float spread2_, log_spread_;  ///< spread^2 and log(1 + 1 / spread^2) of multiple_pdf()
+  float spread2_, log_spread_;  ///< spread^2 and log(1 + 1 / spread^2) of multiple_pdf_solid_angle()
 };
 
 }  // namespace tempolux

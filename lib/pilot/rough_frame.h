@@ -27,12 +27,13 @@ struct Work {
 
 /// Work and variance of one sample. Each variance is divided by the square of the error that its pixel may have
 /// (allowed_error at pixel error 1), because a picture file stores about the root of radiance. The value of a sample is
-/// cut where it alone makes its pixel white. A variance is the square of the mean root over 16 x 9 parts of the
-/// picture, because frames take more samples in noisy parts: n samples per pixel leave variance / n.
+/// cut where it alone makes its pixel white. Variances are joined over 16 x 9 parts of the picture:
+/// the square of the mean of their roots, because frames take more samples in noisy parts. n samples per pixel leave
+/// variance / n.
 struct SampleEffort {
-  double work = 0;                              ///< shadow rays
-  double all = 0, without_caustic = 0;          ///< variance of all light, and of all but layer caustic
-  double other = 0, other_without_caustic = 0;  ///< the same without layer indirect
+  double work = 0;                                  ///< shadow rays
+  double all = 0, without_caustic = 0;              ///< variance of all light, and of all but layer caustic
+  double other = 0, other_without_caustic = 0;      ///< the same without layer indirect
   MissedLight missed_caustic{}, missed_indirect{};  ///< light of these layers that the samples miss
 };
 

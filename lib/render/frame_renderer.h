@@ -50,6 +50,7 @@ struct LayerImage {
   std::vector<std::uint8_t> confirmed;
   /// By layer: the variance of a pixel's mean over the mean square of SampleHalves::difference (NoiseCheck::shares).
   std::array<double, kLayerCount> difference_share{1, 1, 1, 1, 1, 1};
+  /// The halves of a pixel; nullptr if the frame has none.
   SampleHalves* halves_of(std::size_t pixel) { return sample_halves.empty() ? nullptr : &sample_halves[pixel]; }
 };
 

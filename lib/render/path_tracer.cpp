@@ -348,7 +348,8 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     at.remaining_share = known.remaining_share(x.surface, x.normal_geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
-  // Layer indirect; but specular or volume if the camera sees this surface by an event S or by a medium.
+  // If the camera sees this surface directly, stored light belongs to layer indirect; if it sees the surface by an
+  // event S or through a medium, to layer specular or volume.
   const Layer layer = path.after(true).after(true).layer();
   // With bright points, irradiance of points is only the remaining light of a surface. A glossy ray comes from a place
   // that has not sampled bright points, so its path continues.

@@ -124,7 +124,7 @@ Pose Animator::pose(std::size_t n, double time_s, const std::vector<Affine>& wor
 
 Affine Animator::local(std::size_t n, double time_s) const {
   const Node& node = scene_->nodes[n];
-  if (node.has_matrix) return node.matrix;
+  if (node.has_matrix) return node.parent_from_node;
   Vec3d translation = node.translation, scale = node.scale;
   std::array<double, 4> rotation = node.rotation;
   for (const AnimationTrack* track : tracks_[n]) {

@@ -25,8 +25,8 @@ void read_matrix(const Import& import, const std::vector<double>& values, const 
   if (values[3] != 0 || values[7] != 0 || values[11] != 0 || values[15] != 1)
     import.fail(place, "must be affine: last row 0 0 0 1");
   node.has_matrix = true;
-  for (std::size_t i = 0; i < 3; ++i) node.matrix.row[i] = {values[i], values[4 + i], values[8 + i]};
-  node.matrix.translation = {values[12], values[13], values[14]};
+  for (std::size_t i = 0; i < 3; ++i) node.parent_from_node.row[i] = {values[i], values[4 + i], values[8 + i]};
+  node.parent_from_node.translation = {values[12], values[13], values[14]};
 }
 
 int checked_index(const Import& import, int index, std::size_t count, const std::string& place) {

@@ -187,12 +187,13 @@ struct Node {
   std::string name;
   int parent = -1;                 ///< smaller than the node's own index: parents come first
   std::uint32_t source_index = 0;  ///< index in the file, for messages
-  // parent_from_node at rest: translation x rotation x scale, or `matrix` if has_matrix. A matrix cannot be animated.
+  // parent_from_node at rest: translation x rotation x scale, or the matrix if has_matrix. A matrix
+  // cannot be animated.
   Vec3d translation{};
   std::array<double, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x y z w
   Vec3d scale{1, 1, 1};
   bool has_matrix = false;
-  Affine matrix{};
+  Affine parent_from_node{};
   int mesh = -1, camera = -1, light = -1;  ///< -1: none
   int skin = -1;                           ///< -1: none. Skinned primitives ignore the node's transform
   std::vector<double> weights;             ///< morph weights of the mesh at rest

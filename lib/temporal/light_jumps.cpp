@@ -12,11 +12,11 @@ constexpr double kLeast = 1.0 / 16;  ///< a smaller step is hidden in the noise 
 /// one neighbouring step is about as large as the step itself, so neither is a jump.
 constexpr double kLeastOverNeighbours = 2;
 
-/// Power of all lights without their textures, W, to compare two frames. A directional light counts 4 pi times its
+/// Flux of all lights without their textures, W, to compare two frames. A directional light counts 4 pi times its
 /// irradiance.
-double lamp_power(const SceneFrame& frame) {
-  double power = 0;
-  for (const PlacedLight& lamp : frame.lights) power += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));
+double lamp_flux(const SceneFrame& frame) {
+  double flux = 0;
+  for (const PlacedLight& lamp : frame.lights) flux += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));
   for (const Surface& s : frame.surfaces) {
     const double emission = double(luminance(frame.materials[s.material].emission));
     if (!(emission > 0)) continue;
@@ -25,13 +25,13 @@ double lamp_power(const SceneFrame& frame) {
       const Vec3 a = s.position(t[0]), b = s.position(t[1]), c = s.position(t[2]);
       area += 0.5 * double(length(cross(b - a, c - a)));
     }
-    power += std::numbers::pi * emission * area;
+    flux += std::numbers::pi * emission * area;
   }
-  return power;
+  return flux;
 }
 
 double step_of_lamps(const SceneFrame& a, const SceneFrame& b) {
-  const double from = lamp_power(a), to = lamp_power(b), most = std::max(from, to);
+  const double from = lamp_flux(a), to = lamp_flux(b), most = std::max(from, to);
   return most > 0 ? std::abs(to - from) / most : 0;
 }
 
@@ -64,7 +64,7 @@ bool jumps(const FramesInARow& f, const Step& step) {
 
 bool light_jumps(const FramesInARow& frames) {
   if (!frames.previous || !frames.here) return false;
-  if ((lamp_power(*frames.previous) > 0) != (lamp_power(*frames.here) > 0)) return true;
+  if ((lamp_flux(*frames.previous) > 0) != (lamp_flux(*frames.here) > 0)) return true;
   if (jumps(frames, step_of_lamps)) return true;
   for (std::size_t s = frames.here->static_count; s < frames.here->surfaces.size(); ++s)
     if (jumps(frames,

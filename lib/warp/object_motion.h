@@ -33,9 +33,8 @@ class ObjectMotions {
   /// Number of known objects.
   std::size_t count() const { return motions_.size(); }
   bool all_still() const { return all_still_; }
-  /// By object, the transform from a space of this frame (such as camera space) to a space of the other frame.
-  /// `space_from_other` and `here_from_space` convert to and from world space; `still` is the transform of objects that
-  /// do not move.
+  /// For each object, the transform from a space of this frame (such as camera space) to a space of the other frame:
+  /// `space_from_other` x the object's motion x `here_from_space`. Objects that do not move get `still`.
   std::vector<Affine> transforms(const Affine& space_from_other, const Affine& here_from_space,
                                  const Affine& still) const;
 

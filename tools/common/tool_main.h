@@ -34,7 +34,7 @@ namespace tempolux::tools {
 
 enum ExitCode {
   exit_ok = 0,         ///< done, all outputs complete
-  exit_differs = 1,    ///< aqm-compare --fail-above, tempolux-info --check and --diff only
+  exit_differs = 1,    ///< aqm-compare --fail-above, tempolux-info --check, --whole and --diff only
   exit_bad_input = 2,  ///< usage, bad or stale input
   exit_cannot = 3,     ///< no memory, disk full, write failed
 };

@@ -1,4 +1,4 @@
-// tools/stages/measured.h -- photons of a preview by what `make measure` has measured (formats/plan/plan.md 6).
+// tools/stages/measured.h -- photons of a preview by what `make measure` has measured (formats/plan/plan.md).
 #pragma once
 
 #include <map>

@@ -21,16 +21,17 @@ const std::map<std::string, UpdateStrategy> kStrategies{
     {"fde", UpdateStrategy::fde},       {"dip", UpdateStrategy::dip},       {"hybrid", UpdateStrategy::hybrid},
     {"path", UpdateStrategy::path},     {"all", UpdateStrategy::all}};
 
-/// Converts "10%" or "10" to .1.
+/// Converts "10%" or "0.1" to .1, as percent() does for other options.
 double share_of(const std::string& text, const char* option) {
   std::size_t read = 0;
-  double percent = -1;
+  double number = -1;
   try {
-    percent = std::stod(text, &read);
+    number = std::stod(text, &read);
   } catch (const std::exception&) {}
-  if (!(percent >= 0 && percent <= 100) || (text.substr(read) != "%" && read != text.size()))
-    throw InputError(std::string(option) + ": '" + text + "' is not a share; write 10% or 2.5%");
-  return percent / 100;
+  const double share = text.substr(read) == "%" ? number / 100 : read == text.size() ? number : -1;
+  if (!(share >= 0 && share <= 1))
+    throw InputError(std::string(option) + ": '" + text + "' is not a share; write 10% or 0.1");
+  return share;
 }
 
 /// True if all states of the scene that light depends on are the map's.
