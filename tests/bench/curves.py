@@ -4,10 +4,10 @@ reference in halves.
 A point is (CPU seconds of a frame out of a range of 24, seen error). What the range shares (light that stands, the plan) is divided
 by its frames; start and import of other renderers are left out. One part of the evidence for each scene.
 
-Seen error multiplies the differences to both halves of a reference, so the reference's own noise does not add to it. What is
-left is the bend of the codes' curve (the mean code of a noisy half is not the code of its mean: bend()) and the scatter of
-the products. A reference grows until both are small beside the error that it judges (enough()), or until it has cost
-REFERENCE_CPU; then the row says so.
+Seen error multiplies the differences to both halves of a reference, so the reference's own noise does not add to it.
+What is left is the bend of the codes' curve (the mean code of a noisy half is not the code of its mean: bend()) and the
+scatter of the products. A reference grows until both are small beside the error that it judges (enough()), or until it
+has cost REFERENCE_CPU; then the row says so.
 """
 
 import fnmatch
@@ -67,8 +67,8 @@ def of_range(bench, wish):
 
 
 def shared_out(out, together):
-    """CPU seconds of a frame of a range: those of each folder of OUT by how many of its files a frame of the range needs.
-    `together`: of_range()."""
+    """CPU seconds of a frame of a range: those of each folder of OUT by how many of its files a frame of the range
+    needs. `together`: of_range()."""
     total = 0.0
     for folder, count in by_folder(out).items():
         spent = sum(stats["cpu_s"] for stats in pipeline.stats_in(out, folder))
@@ -109,7 +109,10 @@ class Curves:
     def reference(self, judged):
         """Halves of our own paths, with what only light paths find, good enough to judge this picture."""
         reference = Reference(self.bench, self.case, self.size, self.options)
-        reference.until(lambda a, b: enough([pixels.planes(a), pixels.planes(b)], judged, self.width, self.height), self.reference_cpu)
+        reference.until(
+            lambda *halves: enough([pixels.planes(half) for half in halves], judged, self.width, self.height),
+            self.reference_cpu,
+        )
         return [pixels.planes(half) for half in reference.halves]
 
     def reference_said(self):
@@ -224,7 +227,9 @@ class Curves:
             facts, files = load(Path(f"{stem}.json")), [Path(f"{stem}_{h}.pfm") for h in "ab"]
             facts = facts or {"samples": 0, "cpu_s": 0.0, "parts": 0}
             two = [planes_of(file) for file in files] if facts["samples"] else None
-            while not two or not enough(two, judged, self.width, self.height) and 2 * facts["cpu_s"] <= self.reference_cpu:
+            while not two or (
+                not enough(two, judged, self.width, self.height) and 2 * facts["cpu_s"] <= self.reference_cpu
+            ):
                 had, more = facts["samples"], facts["samples"] or FIRST
                 for h in range(2):
                     planes, cpu = frame(more, 1000 + 2 * facts["parts"] + h, False, f"{self.stem}-more")
@@ -357,8 +362,8 @@ def reference(bench, name):
 
 
 def bend(seen, halves, width, height):
-    """RMS in codes by which a half is off because codes are no straight line. The code of the halves' mean has half of the
-    bend of a half, so twice its difference to their mean code is the bend; boxes of 15 pixels take the noise away."""
+    """RMS in codes by which a half is off because codes are no straight line. The code of the halves' mean has half of
+    the bend of a half, so twice its difference to their mean code is the bend; boxes of 15 pixels take the noise away."""
     squares = []
     for c in range(3):
         mean = [code(seen.exposure * (p + q) / 2) for p, q in zip(halves[0][c], halves[1][c])]

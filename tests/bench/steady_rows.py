@@ -71,8 +71,8 @@ def flows(side, frames):
 
 
 def cycles(bench, case, size, frames):
-    """Frames by Cycles with OIDN: {how seeds go: (R, G, B planes of two runs)} and CPU seconds of a frame. A frame that both ways share
-    is rendered once."""
+    """Frames by Cycles with OIDN: {how seeds go: (R, G, B planes of two runs)} and CPU seconds of a frame. A frame that
+    both ways share is rendered once."""
     sky = re.search(r"--environment ([\d.]+),([\d.]+),([\d.]+)", " ".join(map(str, case.shared)))
     peer = Peer(
         bench,
