@@ -22,7 +22,7 @@ import cases
 import exr
 import pipeline
 import pixels
-from measure import Missing, figure, load, quantity, save
+from measure import Missing, figure, load, percent, quantity, save
 from peer_renderers import Peer, denoised, flip, for_denoising, planes_of, write_pfm
 from plot import chart
 from references import FIRST, Curve, Reference, digest
@@ -333,9 +333,14 @@ def reference(bench, name):
             "-o",
             out,
         )
-        halves = [exr.read(out.with_name(f"complete_{h}.exr")) for h in "ab"]
-        return {"said": {k: v for k, v in stats["results"].items() if k.startswith("audit.")}, "cpu": stats["cpu_s"],
-                "halves": 2 ** 0.5 * Seen(*(pixels.planes(h) for h in halves)).half_error()}
+        seen = Seen(*(pixels.planes(exr.read(out.with_name(f"complete_{h}.exr"))) for h in "ab"))
+        squares = sorted(sum((u[p] - v[p]) ** 2 for u, v in zip(seen.a, seen.b)) for p in range(seen.count))
+        return {
+            "said": {k: v for k, v in stats["results"].items() if k.startswith("audit.")},
+            "cpu": stats["cpu_s"],
+            "halves": 2 ** 0.5 * seen.half_error(),
+            "bright": math.fsum(squares[-(seen.count // 100):]) / max(1e-9, math.fsum(squares)),
+        }
     alone, whole = bench.step("paths", render), bench.step("paths and light", lambda: render("--light-paths", light))
     rows, worst, tiles = [], 0.0, 0
     for layer in ("direct", "caustic", "indirect"):
@@ -354,7 +359,10 @@ def reference(bench, name):
         rows,
         worst <= 3 and tiles == 0 and whole["halves"] < 4,
         [
-            f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."
+            f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. "
+            "Layer specular still lacks what mirrors, glass and gloss show of this light.",
+            f"Halves of paths alone differ by {alone['halves']:.1f} codes after {quantity(alone['cpu'])} CPU s; 1 % of the "
+            f"pixels hold {percent(alone['bright'], 0)} of the squares, with light {percent(whole['bright'], 0)}.",
         ],
         f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes",
         min(3 / max(worst, 0.1), 4 / whole["halves"]),
