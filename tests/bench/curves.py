@@ -219,17 +219,17 @@ class Curves:
             planes, more = denoised(self.bench, output)
             return planes, cpu + more
 
-        def halves(judged):
-            """Two independent pictures without denoising, good enough to judge this one; they grow and are kept."""
+        def halves(pictures):
+            """Two independent pictures without denoising, good enough to judge these; they grow and are kept."""
+            def all_judged(two):
+                return all(enough(two, planes, self.width, self.height) for planes, _ in pictures)
             folder = self.bench.out / "every" / "reference"
             folder.mkdir(parents=True, exist_ok=True)
             stem = folder / f"{self.case.name}-{self.size}-{name}-{digest(self.case, self.size, [])}"
             facts, files = load(Path(f"{stem}.json")), [Path(f"{stem}_{h}.pfm") for h in "ab"]
             facts = facts or {"samples": 0, "cpu_s": 0.0, "parts": 0}
             two = [planes_of(file) for file in files] if facts["samples"] else None
-            while not two or (
-                not enough(two, judged, self.width, self.height) and 2 * facts["cpu_s"] <= self.reference_cpu
-            ):
+            while not two or not all_judged(two) and 2 * facts["cpu_s"] <= self.reference_cpu:
                 had, more = facts["samples"], facts["samples"] or FIRST
                 for h in range(2):
                     planes, cpu = frame(more, 1000 + 2 * facts["parts"] + h, False, f"{self.stem}-more")
@@ -242,11 +242,11 @@ class Curves:
                 facts |= {"samples": had + more, "parts": facts["parts"] + 1}
                 save(Path(f"{stem}.json"), facts)
                 two = [planes_of(file) for file in files]
-            return two, facts["cpu_s"]
+            return two, facts["cpu_s"], all_judged(two)
 
         def make(n):
             pictures = [frame(n, seed, clean, self.stem) for seed in (1, 2)]
-            two, spent = halves(pictures[0][0])
+            two, spent, converged = halves(pictures)
             seen = Seen(*two)
             judged = [
                 (cpu, *self.judged(seen, two, planes, seed == 1)) for seed, (planes, cpu) in zip((1, 2), pictures)
@@ -254,7 +254,7 @@ class Curves:
             return {
                 "points": judged,
                 "said": self.said_of(label, seen, two, spent),
-                "enough": all(enough(two, planes, self.width, self.height) for planes, _ in pictures),
+                "enough": converged,
             }
         try:
             found = {n: self.bench.step(key + str(n), lambda n=n: make(n)) for n in reversed(samples)}
