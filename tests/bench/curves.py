@@ -363,6 +363,7 @@ def reference(bench, name):
             "Layer specular still lacks what mirrors, glass and gloss show of this light.",
             f"Halves of paths alone differ by {alone['halves']:.1f} codes after {quantity(alone['cpu'])} CPU s; 1 % of the "
             f"pixels hold {percent(alone['bright'], 0)} of the squares, with light {percent(whole['bright'], 0)}.",
+            f"4 codes take {quantity((whole['halves'] / 4) ** 2)} times the work if the error falls with its square root.",
         ],
         f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes",
         min(3 / max(worst, 0.1), 4 / whole["halves"]),
