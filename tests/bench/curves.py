@@ -361,9 +361,9 @@ def reference(bench, name):
         [
             f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. "
             "Layer specular still lacks what mirrors, glass and gloss show of this light.",
-            f"Halves of paths alone differ by {alone['halves']:.1f} codes after {quantity(alone['cpu'])} CPU s; 1 % of the "
-            f"pixels hold {percent(alone['bright'], 0)} of the squares, with light {percent(whole['bright'], 0)}.",
-            f"4 codes take {quantity((whole['halves'] / 4) ** 2)} times the work if the error falls with its square root.",
+            f"Halves of paths alone differ by {alone['halves']:.1f} codes after {quantity(alone['cpu'])} CPU s; 1 % of "
+            f"the pixels hold {percent(alone['bright'], 0)} of the squares, with light {percent(whole['bright'], 0)}.",
+            f"4 codes take at least {quantity((whole['halves'] / 4) ** 2)} times the work (error over its root).",
         ],
         f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes",
         min(3 / max(worst, 0.1), 4 / whole["halves"]),
@@ -372,7 +372,7 @@ def reference(bench, name):
 
 def bend(seen, halves, width, height):
     """RMS in codes by which a half is off because codes are no straight line. The code of the halves' mean has half of
-    the bend of a half, so twice its difference to their mean code is the bend; boxes of 15 pixels take the noise away."""
+    the bend of a half, so twice its difference to their mean code is the bend. Boxes of 15 pixels take the noise away."""
     squares = []
     for c in range(3):
         mean = [code(seen.exposure * (p + q) / 2) for p, q in zip(halves[0][c], halves[1][c])]
