@@ -372,7 +372,7 @@ def reference(bench, name):
 
 def bend(seen, halves, width, height):
     """RMS in codes by which a half is off because codes are no straight line. The code of the halves' mean has half of
-    the bend of a half, so twice its difference to their mean code is the bend. Boxes of 15 pixels take the noise away."""
+    the bend of a half, so twice its difference to their mean code is the bend. Boxes of 15 pixels even noise out."""
     squares = []
     for c in range(3):
         mean = [code(seen.exposure * (p + q) / 2) for p, q in zip(halves[0][c], halves[1][c])]
