@@ -27,7 +27,7 @@ SMALL = {
     "PIXELS": "--spp 2 --pixel-error 0",
     "FILTER": "1",
 }
-BARE = SMALL | {"FILTER": "none"}     # chains that end before the filter
+BARE = SMALL | {"FILTER": "none"}     # for parts that do not measure the filter: a change of it names none of them
 S1, S2, S3 = (f"pipelines/scenes/{name}.glb" for name in ("S1_cornell", "S2_cornell_moving", "S3_indirect_room"))
 
 # By make: variables of Makefile.example.
@@ -42,19 +42,27 @@ MADE = {
         "KEY_DISTANCE": "4",
         **SMALL,
     },
+    "warp": {
+        "SCENE": "pan.glb",
+        "FRAMES": "0-4",
+        "INDIRECT": "records",
+        "METHOD": "walkthrough",
+        "KEY_DISTANCE": "4",
+        **BARE,
+    },
     "localised": {"SCENE": S2, "FRAMES": "0-2", "INDIRECT": "records", "MOVING": "records", **BARE},
     "temporal": {"SCENE": S2, "FRAMES": "0-2", "INDIRECT": "records", "MOVING": "time", **BARE},
     "split": {"SCENE": S3, "FRAMES": "0", "INDIRECT": "records", "SPLIT": "on", **BARE},
     "filter": {"SCENE": S2, "FRAMES": "9-11", "INDIRECT": "paths", **SMALL, "FILTER": "5"},
-    "preview": {"SCENE": S2, "FRAMES": "0-1", "METHOD": "preview", "SIZE": "32x18", "PHOTONS": "4k"},
+    "preview": {"SCENE": S2, "FRAMES": "0-1", "METHOD": "preview", "SIZE": "32x18", "PHOTONS": "4k", "FILTER": "none"},
     "smoke": {
         "SCENE": S1,
         "FRAMES": "0-1",
-        "INDIRECT": "records",
+        "INDIRECT": "gather",
         "VOLUME": "smoke_####.vdb",
         "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-1",
         "UPDATE": "20%",
-        **SMALL,
+        **BARE,
     },
 }
 # By the tools: words of each command; a word that ends in .exr or .photons without a folder is a file of the canary's own.

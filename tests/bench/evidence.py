@@ -43,6 +43,10 @@ def options():
     parser.add_argument(
         "--small", action="store_true", help="short settings of long parts, said on their rows: to try a part"
     )
+    parser.add_argument("--seeds", type=int, default=8, help="of the presets' points of curves [8]")
+    parser.add_argument(
+        "--sides", default="*", help="sides of curves that are measured beside ours, by semicolon, with * and ? [*]"
+    )
     parser.add_argument("--tiny", action="store_true", help="tiny sizes: does every script still run?")
     return project, parser.parse_args()
 
@@ -160,7 +164,8 @@ def measure(bench, part, rows, commit, deadline):
         "canary": canaries.run_all(bench, part.canaries),
     }
     rows.put(part.name, row)
-    bench.step.forget()
+    if not row.get("partial"):     # else its steps serve the run that measures the rest
+        bench.step.forget()
     print(results_page.told(row), flush=True)
 
 
@@ -172,6 +177,7 @@ def main():
         return
     bench = Bench(args.build.resolve(), args.out.resolve(), project, args.tiny, 16 if args.tiny else 2048)
     bench.small, bench.results = args.tiny or args.small, rows.folder
+    bench.preset_seeds, bench.sides = args.seeds, [name.strip() for name in args.sides.split(";")]
     commit, deadline = commit_of(project), time.monotonic() + 3600 * (args.hours or 1e6)
     if args.parts == "accept":
         accept(bench, rows, commit)

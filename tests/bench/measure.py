@@ -70,6 +70,7 @@ class Bench:
         self.size = "48x28" if tiny else "320x180"
         self.rounds = 1 if tiny else 5
         self.small, self.results = tiny, out      # short settings of long parts; where pages and pictures go
+        self.preset_seeds, self.sides = 8, ["*"]  # of curves: seeds of the presets' points, sides beside ours
         self.walk = None      # walk_speed() at the beginning of the part that is being measured
         shared = project / ".." / "shared" / "scenes"
         self.shared = shared if shared.is_dir() else None

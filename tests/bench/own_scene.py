@@ -103,7 +103,7 @@ def main():
         for seed in (1, 2):
             image, cpu = own.chain(variables, seed)
             planes = [list(image.channels[c]) for c in "RGB"]
-            halves = own.reference(0.5)
+            halves = own.reference(planes)
             found.append((cpu, Seen(*halves).error(planes), None))
         points[label] = found
         if label == "final":

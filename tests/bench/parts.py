@@ -201,8 +201,8 @@ def figures_of_paper(bench):
 
 PAPERS = [
     ("walkthrough", "A: walkthrough: warp, masks, recursion", "S4", 500, ("walk",), paper_rows.walkthrough),
-    ("metric", "A: metric with pixel flow", "S4", 120, ("walk",), paper_rows.metric),
-    ("filter", "A: spatio-temporal filter", "S2 S4", 250, ("filter",), paper_rows.filter_),
+    ("metric", "A: metric with pixel flow", "S4", 120, ("warp",), paper_rows.metric),
+    ("filter", "A: spatio-temporal filter", "S2 S4", 250, ("still", "filter"), paper_rows.filter_),
     ("chain", "A: walkthrough, a whole chain", "S4", 500, ("walk", "still"), paper_rows.whole_chain),
     ("photons", "A: photons over time", "made", 300, ("preview",), paper_rows.photons_over_time),
     ("localised", "A: localised gathering", "room", 150, ("localised",), paper_rows.localised),

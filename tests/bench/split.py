@@ -75,9 +75,10 @@ class Kind:
         for values, value in zip((self.images, self.cpu, self.rays, self.explicit), run):
             values.append(value)
 
-    def variances(self):
-        """By value of the image (pixel and channel), over the seeds."""
-        return [statistics.variance(values) for values in zip(*self.images)]
+    def variances(self, without=None):
+        """By value of the image (pixel and channel), over the seeds but for one."""
+        images = [image for i, image in enumerate(self.images) if i != without]
+        return [statistics.variance(values) for values in zip(*images)]
 
     def means(self):
         return [sum(values) / len(values) for values in zip(*self.images)]
@@ -87,7 +88,8 @@ class Kind:
 
 
 def compare(plain, split):
-    """variance plain / split over the image; of relative variances; of the median pixel; difference of means and its standard error."""
+    """variance plain / split over the image, its standard error; of relative variances; of the median pixel;
+    difference of means and its standard error."""
     a, b, mean = plain.variances(), split.variances(), plain.means()
     dark = (0.1 * sum(mean) / len(mean)) ** 2
     relative = [sum(v / (m * m + dark) for v, m in zip(var, mean)) for var in (a, b)]
@@ -96,7 +98,12 @@ def compare(plain, split):
     of_mean = sum(means[0]) / len(means[0])
     error = math.sqrt(sum(statistics.variance(m) / len(m) for m in means))
     difference = sum(means[1]) / len(means[1]) - of_mean
-    return sum(a) / sum(b), relative[0] / relative[1], ratios[len(ratios) // 2], difference / of_mean, error / of_mean
+    apart, seeds = math.nan, range(len(plain.images))
+    if len(seeds) > 2:      # the jackknife
+        left_out = [sum(plain.variances(i)) / sum(split.variances(i)) for i in seeds]
+        apart = math.sqrt((len(seeds) - 1) * statistics.pvariance(left_out))
+    median = ratios[len(ratios) // 2]
+    return sum(a) / sum(b), apart, relative[0] / relative[1], median, difference / of_mean, error / of_mean
 
 
 def row(name, kind):
@@ -112,9 +119,10 @@ def measured(runs, what, make_plain, make_split, seeds):
     print(f"\n| {what} | samples | CPU |\n|---|---|---|")
     row("rays alone", plain)
     row("split", split)
-    variance, relative, median, difference, error = compare(plain, split)
+    variance, apart, relative, median, difference, error = compare(plain, split)
     cost = statistics.median(plain.cpu) / statistics.median(split.cpu)
-    print(f"\nvariance, rays alone / split: {variance:.1f}; of relative variance {relative:.1f}; of the median pixel {median:.1f}; CPU {cost:.2f}; "
+    print(f"\nvariance, rays alone / split: {variance:.1f} +- {apart:.1f}; of relative variance {relative:.1f}; "
+          f"of the median pixel {median:.1f}; CPU {cost:.2f}; "
           f"means differ by {100 * difference:.2f} +- {100 * error:.2f} %")
 
 
