@@ -140,8 +140,8 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
   rough = example();
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
-  rough.missed_caustic.square = 1;
-  rough.missed_caustic.variance = 1e9;
+  rough.path.missed_caustic.square = rough.gather.missed_caustic.square = 1;
+  rough.path.missed_caustic.variance = rough.gather.missed_caustic.variance = 1e9;
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
 }
 

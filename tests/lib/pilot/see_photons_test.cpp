@@ -66,7 +66,7 @@ TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
     }
   EXPECT_NEAR(photons.mean / expected, 1, 0.1);
   EXPECT_NEAR(photons.mean_error / expected, 0.05, 0.02);
-  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (rough.radiance * rough.radiance))
+  EXPECT_GT(rough.path.missed_caustic.square, 0.5 * photons.square / (rough.radiance * rough.radiance))
       << "no path finds it";
   EXPECT_TRUE(ways.front().map);
   EXPECT_EQ(indirect.mean, 0) << "a single wall lights nothing";
@@ -83,7 +83,7 @@ TEST(SeePhotons, AFewPhotonsProveLightThatPathsDoNotFind) {
   const auto [photons, indirect, rough, ways] = pilots_of(scene);
   EXPECT_GT(photons.mean, 0);
   EXPECT_LT(photons.mean, 3 * photons.mean_error);
-  EXPECT_GT(rough.missed_caustic.square, 0.2 * photons.square / (rough.radiance * rough.radiance));
+  EXPECT_GT(rough.path.missed_caustic.square, 0.2 * photons.square / (rough.radiance * rough.radiance));
 }
 
 /// A shining ceiling over a glossy floor: paths from the wall meet the ceiling after the floor. They find the same
@@ -93,7 +93,7 @@ TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
   scene.add_quad({-4, 6, 0}, {8, 6, 0}, {8, 6, 8}, {-4, 6, 8}, test::matte(Rgb(0.0f), Rgb(1.0f)));
   const auto [photons, indirect, rough, ways] = pilots_of(scene, mirror(0.6f));
   EXPECT_GT(photons.mean, 0);
-  EXPECT_EQ(rough.missed_caustic.square, 0) << "both find the same light";
+  EXPECT_EQ(rough.path.missed_caustic.square, 0) << "both find the same light";
 }
 
 /// A sun without size, E = 1 W/m^2, shines at right angles through a slab of smooth glass, through which the camera
@@ -111,7 +111,7 @@ TEST(SeePhotons, TheSunIsSeenThroughASlabOfGlass) {
   EXPECT_NEAR(photons.mean, expected, 4 * (photons.mean_error + 0.004 * expected));
   EXPECT_EQ(rough.radiance, 0) << "no path finds any light";
   const double level = photons.mean + indirect.mean;
-  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (level * level));
+  EXPECT_GT(rough.path.missed_caustic.square, 0.5 * photons.square / (level * level));
   EXPECT_TRUE(ways.front().map);
 }
 
@@ -120,7 +120,7 @@ TEST(SeePhotons, WithoutMirrorsThereIsNoneToFind) {
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
   const auto [photons, indirect, rough, ways] = pilots_of(scene, test::matte(Rgb(0.5f)));
   EXPECT_EQ(photons.mean, 0);
-  EXPECT_EQ(rough.missed_caustic.square, 0);
+  EXPECT_EQ(rough.path.missed_caustic.square, 0);
   EXPECT_FALSE(ways.front().map);
 }
 
