@@ -104,6 +104,18 @@ specular = more["KHR_materials_specular"]
 along, front = specular["specularFactor"], [.04 * specular["specularFactor"] * t for t in specular["specularColorFactor"]]
 assert plain["metallicFactor"] == 0 and near(front, (.2, .2, .2)) and near([along], [.2]), looks["Glazed"]
 assert near([.8 * c for c in plain["baseColorFactor"][:3]], [.75 * c for c in (.1, .4, .2)]), looks["Glazed"]
+# Metallic .3 without a dielectric reflection: .3 of the metal's colour from in front, .3 along the surface; in even light
+# the matte part returns .7 of its colour.
+plain, more = looks["Bare"]
+ior, specular = more.get("KHR_materials_ior", {}).get("ior", 1.5), more.get("KHR_materials_specular", {})
+along = specular.get("specularFactor", 1)
+front = [((ior - 1) / (ior + 1)) ** 2 * along * t for t in specular.get("specularColorFactor", (1, 1, 1))]
+assert plain["metallicFactor"] == 0 and near(front, [.3 * c for c in (.6, .2, .1)]) and near([along], [.3]), looks["Bare"]
+below = [(1 - (20 * max(front) + along) / 21) * c for c in plain["baseColorFactor"][:3]]
+assert near(below, [.7 * c for c in (.6, .2, .1)]), looks["Bare"]
+# In Blender nothing is behind a lamp without power; one that has power in any frame stays.
+assert "Dark" not in named and not any(k.startswith("Dark") for k in [*strength, *looks]), sorted(named)
+assert "Rises" in named, sorted(named)
 wraps = {}
 for name in ("Once", "Thrice"):
     texture = shot["materials"][shot["meshes"][named[name]["mesh"]]["primitives"][0]["material"]]["pbrMetallicRoughness"]["baseColorTexture"]

@@ -129,6 +129,18 @@ for name, kind, x in (("Half", half, -1), ("Glazed", glazed, -1.4), ("Tumbler", 
     bpy.context.object.data.materials.append(kind)
     for face in bpy.context.object.data.polygons:
         face.use_smooth = True
+# A metal of .3 without a dielectric reflection; an area lamp without power, and one that has power in the last frame alone.
+bare, shader = material("Bare", "ShaderNodeBsdfPrincipled", **{"Metallic": .3, "Base Color": (.6, .2, .1, 1)})
+shader.inputs["Specular IOR Level" if "Specular IOR Level" in shader.inputs else "Specular"].default_value = 0
+bpy.ops.mesh.primitive_cube_add(size=.1, location=(-2.2, 2, 1))
+bpy.context.object.data.materials.append(bare)
+for name in ("Dark", "Rises"):
+    lamp = bpy.data.lights.new(name, "AREA")
+    lamp.energy = 0
+    scene.collection.objects.link(bpy.data.objects.new(name, lamp))
+for frame, energy in ((5, 0), (6, 2)):
+    lamp.energy = energy
+    lamp.keyframe_insert("energy", frame=frame)
 # An image that one mesh shows once and another three times.
 shown, shader = material("Shown", "ShaderNodeBsdfPrincipled")
 texture = shown.node_tree.nodes.new("ShaderNodeTexImage")
