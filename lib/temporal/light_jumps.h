@@ -15,7 +15,7 @@ struct FramesInARow {
 };
 
 /// True if the lights or a surface jump between `previous` and `here`. A jump is a step that is larger than twice the
-/// sum of the steps before and after it, and larger than 1/16 of the power of all lights or of the surface's size. If
+/// sum of the steps before and after it, and larger than 1/16 of the flux of all lights or of the surface's size. If
 /// all lamps go on or off, light jumps in any case, even for a single frame. False if `previous` is null.
 bool light_jumps(const FramesInARow& frames);
 
