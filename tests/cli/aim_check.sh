@@ -2,7 +2,7 @@
 # number of threads, what is no view file refused, too few photons said.
 . "$HERE/expect.sh"
 scenes=$HERE/../../pipelines/scenes
-python3 -B - "$HERE/../bench" <<'EOF' || bad 'scenes'
+python3 -B - "$HERE/../support" <<'EOF' || bad 'scenes'
 import sys
 sys.path.insert(0, sys.argv[1])
 from open_scenes import hut

@@ -15,7 +15,7 @@ on_terminal "$slow 2> err"; has_bar && bad 'a bar though standard error is a fil
 [ -s err ] && bad "words in a file: $(cat err)"
 on_terminal 'tool-probe s.glb --bytes 128KiB -o a.out'; has_bar && bad 'a bar for a moment of work'
 # The tools with long work give their progress.
-for source in stages/trace_photons stages/build_records stages/gather_frames volume-compose stages/render_frame stages/compare_frames info/info_answer stages/planning; do
+for source in stages/trace_photons stages/build_records stages/gather_frames stages/compose_smoke stages/render_frame stages/compare_frames info/info_answer stages/planning; do
   grep -qE 'progress(_sink)?\(' "$HERE/../../tools/$source.cpp" || bad "$source says nothing of its progress"
 done
 exit $failed

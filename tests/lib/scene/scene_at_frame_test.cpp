@@ -159,6 +159,7 @@ TEST(SceneAtFrame, LensShiftComesFromTheCamerasExtras) {
 
 TEST(SceneAtFrame, LensAndShutterComeFromTheNodesExtras) {
   GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
   const int node = maker.add_camera({{"extras",
                                       {{"lens_mm", 50},
                                        {"f_stop", {2.5, 5, 10}},
@@ -182,12 +183,13 @@ TEST(SceneAtFrame, LensAndShutterComeFromTheNodesExtras) {
   EXPECT_EQ(camera_at(4).shutter_frames, 0.5);
   EXPECT_EQ(camera_at(4).shutter, Camera::Shutter::start);
 
-  maker.json["nodes"][0]["extras"] = {{"f_stop", -1}, {"lens_mm", "long"}, {"shutter_position", 2}, {"focus_m", {}}};
+  maker.json["nodes"][node]["extras"] = {{"f_stop", -1}, {"lens_mm", "long"}, {"shutter_position", 2}, {"focus_m", {}}};
   EXPECT_EQ(maker.load().warnings.size(), 3u);  // {} is null: the file does not say
 }
 
 TEST(SceneAtFrame, BetweenTwoFramesIsBetweenTheirStates) {
   GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
   const int node = maker.add_camera({{"name", "Camera"}});
   maker.animate(node, "translation", {0, 1}, {0, 0, 0, 24, 0, 0});
   const Scene scene = maker.load();
