@@ -49,7 +49,7 @@ import struct, sys
 sys.stdout.buffer.write(struct.pack("<4096f", *(float(i % 7) for i in range(4096))))' |
     "$bin/../tests/make-vdb" "$smoky/smoke_0000.vdb" 16 16 16 .06 -.45 .5 -.45 || bad 'no smoke'
   same smoke SCENE=$S1 FRAMES=0 INDIRECT=records POINTS="$few" PIXELS="$pixels" VOLUME="$smoky/smoke_####.vdb" REFINE=5% \
-    VOLUME_OPTIONS='--sigma-t 2 --albedo .8,.7,.6 --phase-g -.2'
+    VOLUME_OPTIONS='--volume-frames 0-0 --sigma-t 2 --albedo .8,.7,.6 --phase-g -.2'
 fi
 # scene-plan typed by hand, with relative names.
 (cd "$odd" && "$bin/scene-plan" 'S 1.glb' -o plan --size 16x9 --photons 2k --indirect paths -q) ||
