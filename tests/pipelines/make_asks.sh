@@ -1,6 +1,7 @@
 #!/bin/sh
 # Makefile.example with make -n and with invalid requests: sh tests/pipelines/make_asks.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools.
+export REPORT_CPU=1   # CPU seconds of the reference of own_scene.py
 bin=$1 top=$PWD
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT

@@ -1,6 +1,7 @@
 #!/bin/sh
 # After a change make runs the necessary commands and no others: sh tests/pipelines/rerun.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools. Compares the list of commands; scene-plan always runs.
+export REPORT_CPU=1   # CPU seconds of the reference of own_scene.py
 bin=$1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
