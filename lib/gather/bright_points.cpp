@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "lib/core/frame.h"
@@ -15,6 +16,20 @@
 
 namespace tempolux {
 namespace {
+
+/// Sorts `values` by way of their indices: a site holds a Bsdf, so that moving it is dear. Equal values keep their
+/// order.
+template <class T, class Before>
+void sort_stably(std::vector<T>& values, const Before& before) {
+  std::vector<std::uint32_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return before(values[a], values[b]); });
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const std::uint32_t i : order) sorted.push_back(std::move(values[i]));
+  values = std::move(sorted);
+}
 
 /// Sites per point. Sites of a spot are drawn at random; the mean over 16 sites has an error of a few per cent of the
 /// point's light.
@@ -76,7 +91,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   parallel_each(placed.size(), 256, [&](std::size_t i) { found[i] = site_at(placed[i].place, placed[i].area); });
   for (std::optional<Site>& site : found)
     if (site) sites_.push_back(std::move(*site));
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
+  sort_stably(sites_, [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<std::uint32_t> uneven;
   for (std::uint32_t i = 0; i < sites_.size(); ++i)
     if (!points.is_uniform(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
@@ -85,6 +100,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
 
 /// Places sites at photons of lamps.
 void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
+  sites_.reserve(sites_.size() + photons.size());
   std::unordered_map<std::uint64_t, std::uint32_t> cells;  // number of each cell with photons that have no point
   for (const LampPhoton& photon : photons) {
     std::uint32_t spot = photon.point;
@@ -98,7 +114,7 @@ void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
 
 /// Joins the sites of each point, or cell, into a spot.
 void BrightPoints::gather_spots() {
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) {
+  sort_stably(sites_, [](const Site& a, const Site& b) {
     const bool lamp_a = a.lamp_distance > 0, lamp_b = b.lamp_distance > 0;
     return lamp_a != lamp_b ? lamp_b : a.spot < b.spot;
   });
