@@ -109,11 +109,12 @@ def watch(bench, rows, commit):
         if row["compiler"] and row["compiler"] != stamp:
             strange.add(row["compiler"])
         changes = canaries.differences(row, {name: ran[name] for name in part.canaries if name in ran}, stamp)
-        if changes and not row.get("stale"):
-            row["stale"] = {"since": commit, "what": changes}
-            rows.put(part.name, row)
-        elif row.get("stale") and not changes and row["canary"]:
+        was = row.get("stale")
+        if changes:                       # a row that is stale stays so since its first change, with today's words
+            row["stale"] = {"since": was["since"] if was else commit, "what": changes}
+        elif row["canary"]:
             row["stale"] = None           # the change was taken back
+        if row.get("stale") != was:
             rows.put(part.name, row)
         if row.get("stale"):
             print(f"stale: {part.name}: {'; '.join(row['stale']['what'])}", flush=True)
