@@ -14,7 +14,7 @@ clock() {
   else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
 }
 
-# FOLDER PART CPU_SECONDS WORDS of each stage, as plan.json has them.
+# Prints a line for each stage of plan.json: FOLDER PART CPU_SECONDS WORDS.
 stages() {
   awk -F '"' '$2 == "segments" { exit } $2 == "folder" { folder = $4 } $2 == "part" { part = $4 }
     $2 == "words" { words = $4 }

@@ -1,5 +1,5 @@
-// lib/light_texture/mesh_elements.h -- light textures: photons counted by small triangles of the surfaces, and smoothed along
-// the surfaces.
+// lib/light_texture/mesh_elements.h -- light textures: counts photons by small triangles of the surfaces, and smooths
+// the counts along the surfaces.
 //
 // Paper: Jimenez, Myszkowski, Pueyo 2005, sections 3 and 6. Method: docs/methods/light_textures.md.
 #pragma once

@@ -1,11 +1,11 @@
-// lib/material/lobe.h -- what a lobe of a Bsdf tells, and what it is told.
+// lib/material/lobe.h -- the functions that every lobe of a Bsdf has, with their arguments and results.
 #pragma once
 
 #include "lib/core/vec.h"
 
 namespace tempolux {
 
-/// What a lobe has for a direction w: the share of uniform light that it reflects towards w [1].
+/// The share of uniform light that a lobe reflects towards a direction w [1].
 struct LobeAlbedo {
   Rgb single{0.0f}, multiple{0.0f};  ///< shares reflected by one and by several microfacets
   float lost = 0;                    ///< 1 - E: the share that GGX alone would lose at F = 1

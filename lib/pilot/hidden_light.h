@@ -1,5 +1,5 @@
-// lib/pilot/hidden_light.h -- light that no camera path finds: from lights without extent, through mirrors and smooth
-// glass. Its share of a picture, and the light itself for references.
+// lib/pilot/hidden_light.h -- light that no camera path can find, because mirrors and smooth glass send it on from a
+// lamp without extent: its share of a picture, and the light itself for references.
 #pragma once
 
 #include "lib/render/camera_view.h"

@@ -1,4 +1,4 @@
-// lib/pilot/see_photons.h -- caustic and indirect light that a camera sees, estimated from photons alone.
+// lib/pilot/see_photons.h -- estimates the caustic and indirect light that a camera sees, from photons alone.
 #pragma once
 
 #include "formats/photons/photons.h"

@@ -301,7 +301,8 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // Only photons of distant light are aimed. Without distant light the aim serves the points alone, and the first
     // picture decides whether the scene is large enough for an aim.
-    if (picture == segment.first && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty()) return "";
+    if (picture == segment.first && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty())
+      return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);

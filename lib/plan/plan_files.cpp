@@ -180,7 +180,8 @@ std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& to
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
   const std::string stops = graph.exposure ? std::to_string(*graph.exposure) : "";
   const std::string exposure = "shown/exposure-" + key_of_text(stops.empty() ? first + viewer : stops);
-  std::string text = (stops.empty() ? "" : "stops := " + stops + "\n") + exposure + ": | " + first + "\n", frames, previews, all = exposure + viewer;
+  std::string text = (stops.empty() ? "" : "stops := " + stops + "\n") + exposure + ": | " + first + "\n";
+  std::string frames, previews, all = exposure + viewer;
   for (const int frame : plan.frames) {
     const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame), name = "frames/" + digits;
     frames += " " + name + ".exr";

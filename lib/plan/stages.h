@@ -95,7 +95,7 @@ inline constexpr auto kStages = std::to_array<StageInfo>({
      0.2, 100, "compare"},
 });
 
-/// The stage whose files are in this folder of OUT. A name that no stage has fails to compile.
+/// Returns the stage that writes its files into this folder of OUT. An unknown folder does not compile.
 consteval const StageInfo& stage_in(std::string_view folder) {
   for (const StageInfo& stage : kStages)
     if (stage.folder == folder) return stage;

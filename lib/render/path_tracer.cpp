@@ -20,7 +20,7 @@ constexpr std::uint32_t kRouletteFrom = 3;  ///< paths of fewer bounces always s
 /// scattering by a Lambert lobe or in a medium.
 struct PathState {
   PixelRandom random;        ///< random numbers of the path, by bounce
-  Layers* result;            ///< the part of the sample that receives the light found from here on
+  Layers* result;            ///< receives the light that the path finds from here on: one part of the sample
   Ray ray;                   ///< leaves the last vertex
   Hit hit;                   ///< what `ray` meets
   RayCone cone;              ///< width of the path's footprint, for look-ups in textures

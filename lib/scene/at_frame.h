@@ -180,7 +180,7 @@ class SegmentScene {
 
   const Segment& segment() const { return segment_; }
   /// The scene at `frame`, which may lie between two frames (12.25) and must be in the segment (else
-  /// std::invalid_argument). Throws InputError if a transform moves geometry or a light out of the range of coordinates.
+  /// std::invalid_argument). Throws InputError if a transform moves geometry or a light out of range.
   SceneFrame at(double frame) const;
 
  private:

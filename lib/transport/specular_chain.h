@@ -40,7 +40,8 @@ class SpecularChain {
 
   /// Follows the ray to the next surface. False if the ray leaves the scene.
   bool meet();
-  /// The surface's shading, with textures averaged over `width` m. Valid until the next meet().
+  /// Returns the shading of the surface that meet() found, with textures averaged over `width` m. The reference is
+  /// valid until the next meet().
   const ShadingPoint& shade(float width);
   /// Continues the ray by an event at the surface.
   void go_on(const Scattered& event);

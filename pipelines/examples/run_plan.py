@@ -46,16 +46,16 @@ def run(out, programs, entry):
     return "" if code == 0 and there(out, entry["makes"]) else f"{entry['file']}: {entry['argv'][0]} ended with {code}"
 
 
-def make_all(out, programs, jobs, todo):
+def make_all(out, programs, jobs, waiting):
     """Runs commands, `jobs` at once; after an error no further one."""
     wrong, running = [], set()
     with ThreadPoolExecutor(jobs) as pool:
         while True:
-            for entry in [entry for entry in todo if there(out, entry["inputs"]) and not wrong]:
-                todo.remove(entry)
+            for entry in [entry for entry in waiting if there(out, entry["inputs"]) and not wrong]:
+                waiting.remove(entry)
                 running.add(pool.submit(run, out, programs, entry))
             if not running:
-                return wrong or [f"{entry['file']}: not made: an input is missing" for entry in todo]
+                return wrong or [f"{entry['file']}: not made: an input is missing" for entry in waiting]
             done, running = wait(running, return_when=FIRST_COMPLETED)
             wrong += [text for text in (job.result() for job in done) if text]
 

@@ -43,7 +43,7 @@ def worst_first(row):
 def page_of(row):
     """docs/results/NAME.md"""
     text = (f"# {row['title']}\n\n`{row['command']}` · {row['machine']} · load {row['load']} · {row['date']}\n\n"
-            f"The project asks for: {row['asked']}. This part measured: {measured(row)}. Verdict: {verdict(row['met'])}.\n\n")
+            f"Asked: {row['asked']}. This part measured: {measured(row)}. Verdict: {verdict(row['met'])}.\n\n")
     if row.get("paper"):
         text += f"The paper reports: {row['paper']}.\n\n"
     if row.get("stale"):

@@ -136,12 +136,14 @@ def measure(bench, name):
     jump = max(cell["border over within"], default=0)
     return figure(
         f"{name}: steadiness",
-        "in boxes of 15 pixels less noise from frame to frame than Cycles with OIDN; border over within at most 2",
+        "boxes of 15 pixels have less noise from frame to frame than those of Cycles with OIDN, and at most twice as much across "
+        "a segment's border as within a segment",
         ["side", "CPU s a frame", *steady.HEADER],
         [[side_, quantity(row["cpu"]), *steady.cells(row["found"])] for side_, row in rows.items()],
         None if ratio is None else ratio >= 1 and jump <= 2,
         [f"Frames {frames[0]} to {frames[-1]} (Cycles: the first {PAIR}), {size}, two seeds; codes.", *notes],
-        f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, border over within {jump:.1f}"
+        f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, "
+        f"noise across a border over noise within a segment {jump:.1f}"
         + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""),
         ratio and min(ratio, 2 / max(jump, 0.1)),
         **({"steadier": ratio} if ratio else {}),

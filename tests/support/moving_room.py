@@ -7,9 +7,8 @@ With `lamp` the ball stands and the lamp glides under the ceiling instead. What 
 """
 import math
 import sys
-from array import array
 
-from wavy import Mesh, unit, write_glb
+from wavy import Mesh, Room, unit
 
 SIZE = (8.0, 3.0, 6.0)                       # m; x along, y up, z across
 LAST_S = 47 / 24                             # the ball's last key
@@ -60,49 +59,19 @@ def furniture(triangles):
 
 def make(path, triangles=200_000, lamp_moves=False):
     """Writes the room as .glb; the number of triangles it has."""
-    gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
-            "bufferViews": [], "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"]}
-    binary, count = bytearray(), 0
-
-    def accessor(data, kind, component, **more):
-        gltf["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data) * data.itemsize})
-        binary.extend(data.tobytes())
-        gltf["accessors"].append({"bufferView": len(gltf["bufferViews"]) - 1, "componentType": component, "type": kind,
-                                  "count": len(data) // {"VEC3": 3, "SCALAR": 1}[kind], **more})
-        return len(gltf["accessors"]) - 1
-
-    def add(name, mesh, material):
-        bounds = {f: [g(mesh.positions[i::3]) for i in range(3)] for f, g in (("min", min), ("max", max))}
-        attributes = {"POSITION": accessor(mesh.positions, "VEC3", 5126, **bounds), "NORMAL": accessor(mesh.normals, "VEC3", 5126)}
-        gltf["materials"].append({"name": name, **material})
-        gltf["meshes"].append({"name": name, "primitives": [{"attributes": attributes, "material": len(gltf["materials"]) - 1,
-                                                             "indices": accessor(mesh.indices, "SCALAR", 5125)}]})
-        gltf["nodes"].append({"name": name, "mesh": len(gltf["meshes"]) - 1})
-        return len(mesh.indices) // 3
-
-    matte = {"KHR_materials_specular": {"specularFactor": 0}}
-    things = list(furniture(triangles)) + [("Ball", (0.7, 0.5, 0.2), ball((0, 0, 0), 0.25, 24))]
-    for name, colour, mesh in things:
-        count += add(name, mesh, {"extensions": matte, "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}})
-    mover = len(gltf["nodes"]) - 1
+    room = Room()
+    for name, colour, mesh in [*furniture(triangles), ("Ball", (0.7, 0.5, 0.2), ball((0, 0, 0), 0.25, 24))]:
+        mover = room.add_matte(name, colour, mesh)
     begin, end = [2.6, 0.26, 3.0], [5.4, 0.26, 3.6]
-    gltf["nodes"][mover]["translation"] = begin
-    if lamp_moves:
+    room.gltf["nodes"][mover]["translation"] = begin
+    if lamp_moves:                            # the lamp is the next node
         mover, begin, end = mover + 1, [-0.9, 0, 0], [0.9, 0, 0.4]
-    times, places = array("f", [0, LAST_S]), array("f", begin + end)
-    gltf["animations"] = [{"samplers": [{"input": accessor(times, "SCALAR", 5126, min=[0], max=[LAST_S]),
-                                         "output": accessor(places, "VEC3", 5126)}],
-                           "channels": [{"sampler": 0, "target": {"node": mover, "path": "translation"}}]}]
+    room.move(mover, begin, end, LAST_S)
     lamp = Mesh()
     face((3.4, 2.95, 2.6), (1.2, 0, 0), (0, 0, 0.8), 1, lamp)
-    count += add("Lamp", lamp, {"emissiveFactor": [1, 0.95, 0.85],
-                                "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
-                                "extensions": matte | {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}})
-    gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.95, "znear": 0.01}}]
-    gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.3, 1.7, 3.9], "rotation": [-0.084, -0.4826, -0.0466, 0.871]})
-    gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
-    write_glb(path, gltf, binary)
-    return count
+    room.add_lamp(lamp)
+    room.write(path, 0.95, [0.3, 1.7, 3.9], [-0.084, -0.4826, -0.0466, 0.871])
+    return room.triangles
 
 
 if __name__ == "__main__":

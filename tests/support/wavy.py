@@ -95,50 +95,91 @@ def write_glb(path, gltf, binary):
     Path(path).write_bytes(header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
 
 
-def make(path, triangles=10**6):
-    """Writes the hall as .glb; the number of triangles it has."""
-    gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
-            "bufferViews": [], "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"]}
-    binary, count = bytearray(), 0
+class Room:
+    """A .glb of matte meshes, a lamp, a camera and one node that moves."""
 
-    def accessor(data, kind, component, **more):
-        view = {"buffer": 0, "byteOffset": len(binary), "byteLength": len(data) * data.itemsize}
-        binary.extend(data.tobytes())
-        gltf["bufferViews"].append(view)
-        per = {"VEC3": 3, "VEC4": 4, "SCALAR": 1}[kind]
-        gltf["accessors"].append({"bufferView": len(gltf["bufferViews"]) - 1, "componentType": component, "type": kind,
-                                  "count": len(data) // per, **more})
+    def __init__(self):
+        self.gltf = {
+            "asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
+            "bufferViews": [], "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"],
+        }
+        self.binary, self.triangles = bytearray(), 0
+
+    def accessor(self, data, kind, component, **more):
+        gltf = self.gltf
+        gltf["bufferViews"].append(
+            {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data) * data.itemsize}
+        )
+        self.binary.extend(data.tobytes())
+        count = len(data) // {"VEC3": 3, "SCALAR": 1}[kind]
+        view = len(gltf["bufferViews"]) - 1
+        gltf["accessors"].append(
+            {"bufferView": view, "componentType": component, "type": kind, "count": count, **more}
+        )
         return len(gltf["accessors"]) - 1
 
-    def add(name, mesh, material):
+    def add(self, name, mesh, material, extensions):
+        """Adds a node with this mesh, of a material without reflection. Returns the node's number."""
+        gltf = self.gltf
         bounds = {f: [g(mesh.positions[i::3]) for i in range(3)] for f, g in (("min", min), ("max", max))}
-        attributes = {"POSITION": accessor(mesh.positions, "VEC3", 5126, **bounds),
-                      "NORMAL": accessor(mesh.normals, "VEC3", 5126)}
-        gltf["materials"].append({"name": name, **material})
-        gltf["meshes"].append({"name": name, "primitives": [{"attributes": attributes, "material": len(gltf["materials"]) - 1,
-                                                             "indices": accessor(mesh.indices, "SCALAR", 5125)}]})
+        attributes = {
+            "POSITION": self.accessor(mesh.positions, "VEC3", 5126, **bounds),
+            "NORMAL": self.accessor(mesh.normals, "VEC3", 5126),
+        }
+        matte = {"KHR_materials_specular": {"specularFactor": 0}} | extensions
+        gltf["materials"].append({"name": name, **material, "extensions": matte})
+        primitive = {
+            "attributes": attributes,
+            "material": len(gltf["materials"]) - 1,
+            "indices": self.accessor(mesh.indices, "SCALAR", 5125),
+        }
+        gltf["meshes"].append({"name": name, "primitives": [primitive]})
         gltf["nodes"].append({"name": name, "mesh": len(gltf["meshes"]) - 1})
-        return len(mesh.indices) // 3
+        self.triangles += len(mesh.indices) // 3
+        return len(gltf["nodes"]) - 1
 
-    matte = {"KHR_materials_specular": {"specularFactor": 0}}
+    def add_matte(self, name, colour, mesh):
+        return self.add(
+            name, mesh, {"pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}}, {}
+        )
+
+    def add_lamp(self, mesh):
+        black = {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0}
+        strength = {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}
+        return self.add("Lamp", mesh, {"emissiveFactor": [1, 0.95, 0.85], "pbrMetallicRoughness": black}, strength)
+
+    def move(self, node, begin, end, last_s):
+        """Moves a node from begin to end between the times 0 and last_s."""
+        times, places = array("f", [0, last_s]), array("f", [*begin, *end])
+        sampler = {
+            "input": self.accessor(times, "SCALAR", 5126, min=[0], max=[last_s]),
+            "output": self.accessor(places, "VEC3", 5126),
+        }
+        channel = {"sampler": 0, "target": {"node": node, "path": "translation"}}
+        self.gltf["animations"] = [{"samplers": [sampler], "channels": [channel]}]
+
+    def write(self, path, yfov, translation, rotation):
+        """Adds the camera and writes the file."""
+        gltf = self.gltf
+        gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": yfov, "znear": 0.01}}]
+        gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": translation, "rotation": rotation})
+        gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
+        write_glb(path, gltf, self.binary)
+
+
+def make(path, triangles=10**6):
+    """Writes the hall as .glb; the number of triangles it has."""
+    room = Room()
     for name, colour, mesh in meshes(triangles):
-        count += add(name, mesh, {"extensions": matte,
-                                  "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}})
-    gltf["nodes"][-1]["translation"] = [4, 1.2, 3]
-    times, places = array("f", [0, LAST_S]), array("f", [4, 1.2, 3, 11, 1.2, 4])
-    gltf["animations"] = [{"samplers": [{"input": accessor(times, "SCALAR", 5126, min=[0], max=[LAST_S]),
-                                         "output": accessor(places, "VEC3", 5126)}],
-                           "channels": [{"sampler": 0, "target": {"node": len(gltf["nodes"]) - 1, "path": "translation"}}]}]
+        mover = room.add_matte(name, colour, mesh)
+    begin, end = [4, 1.2, 3], [11, 1.2, 4]
+    room.gltf["nodes"][mover]["translation"] = begin
+    room.move(mover, begin, end, LAST_S)
     lamp = Mesh()
     lamp.grid(1, 1, lambda s, t: ([6 + 4 * s, 5.5, 3 + 2 * t], (0, -1, 0)))
-    count += add("Lamp", lamp, {"emissiveFactor": [1, 0.95, 0.85],
-                                "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
-                                "extensions": matte | {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}})
-    gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.01}}]
-    gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.7, 3, 7], "rotation": [-0.05, -0.46, -0.026, 0.886]})
-    gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
-    write_glb(path, gltf, binary)
-    return count
+    room.add_lamp(lamp)
+    room.write(path, 0.9, [0.7, 3, 7], [-0.05, -0.46, -0.026, 0.886])
+    return room.triangles
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,14 +10,20 @@
 
 namespace tempolux::tools {
 
+/// The share that a word as "5%" names: .05. Empty for other words.
+inline std::optional<double> share_in_percent(const std::string& word) {
+  double number = 0;
+  if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number)) return std::nullopt;
+  return number / 100;
+}
+
 /// For transform(): rewrites "5%" as 0.05 and calls `given`, if there is one; other words stay unchanged.
 inline CLI::Validator percent(std::function<void()> given = {}) {
   return CLI::Validator(
       [given = std::move(given)](std::string& word) {
-        double number = 0;
-        if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number))
-          return std::string();
-        word = std::to_string(number / 100);
+        const std::optional<double> share = share_in_percent(word);
+        if (!share) return std::string();
+        word = std::to_string(*share);
         if (given) given();
         return std::string();
       },

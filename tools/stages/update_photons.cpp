@@ -12,6 +12,7 @@
 #include "tools/common/arguments.h"
 #include "tools/common/cli.h"
 #include "tools/common/option_words.h"
+#include "tools/common/percent_option.h"
 
 namespace tempolux::tools {
 namespace {
@@ -23,12 +24,9 @@ const std::map<std::string, UpdateStrategy> kStrategies{
 
 /// Converts "10%" or "0.1" to .1, as percent() does for other options.
 double share_of(const std::string& text, const char* option) {
-  std::size_t read = 0;
-  double number = -1;
-  try {
-    number = std::stod(text, &read);
-  } catch (const std::exception&) {}
-  const double share = text.substr(read) == "%" ? number / 100 : read == text.size() ? number : -1;
+  double share = -1;
+  if (const std::optional<double> percent = share_in_percent(text)) share = *percent;
+  else if (!CLI::detail::lexical_cast(text, share)) share = -1;
   if (!(share >= 0 && share <= 1))
     throw InputError(std::string(option) + ": '" + text + "' is not a share; write 10% or 0.1");
   return share;

@@ -3,16 +3,7 @@
 
 #include <cmath>
 
-#include "lib/points/irradiance_points.h"
-#include "lib/light/lights.h"
-#include "lib/render/known_light.h"
-#include "lib/render/path_tracer.h"
-#include "lib/scene/texture_lookup.h"
-#include "tests/lib/light/light_scene.h"
-#include "tests/support/materials.h"
-#include "tests/support/png_bytes.h"
-#include "tests/support/photons.h"
-#include "tests/support/scenes.h"
+#include "tests/support/textured_scene.h"
 
 namespace tempolux {
 namespace {
@@ -20,9 +11,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 using test::png_image;
+using test::table_of;
 using test::texture_of_image;
-
-EmissionTable table_of(HandMadeScene& scene) { return build_emission_table({&scene.frame(), 1}); }
 
 /// A horizontal square of side 2 at z = 0 of a material with alpha; u along x, v along y.
 HandMadeScene veil(Material::Alpha mode, float alpha, bool textured) {

@@ -4,15 +4,7 @@
 #include <cmath>
 
 #include "lib/points/irradiance_points.h"
-#include "lib/light/lights.h"
-#include "lib/render/known_light.h"
-#include "lib/render/path_tracer.h"
-#include "lib/scene/texture_lookup.h"
-#include "tests/lib/light/light_scene.h"
-#include "tests/support/materials.h"
-#include "tests/support/png_bytes.h"
-#include "tests/support/photons.h"
-#include "tests/support/scenes.h"
+#include "tests/support/textured_scene.h"
 
 namespace tempolux {
 namespace {
@@ -20,9 +12,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 using test::png_image;
+using test::table_of;
 using test::texture_of_image;
-
-EmissionTable table_of(HandMadeScene& scene) { return build_emission_table({&scene.frame(), 1}); }
 
 TEST(NormalMap, TiltsAsTheSpecificationSays) {
   // Red towards the image's right, green towards its top. Codes 218 and 128: x = 0.7098, y = 0.0039, z = 0.7098.

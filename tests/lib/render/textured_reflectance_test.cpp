@@ -3,16 +3,7 @@
 
 #include <cmath>
 
-#include "lib/points/irradiance_points.h"
-#include "lib/light/lights.h"
-#include "lib/render/known_light.h"
-#include "lib/render/path_tracer.h"
-#include "lib/scene/texture_lookup.h"
-#include "tests/lib/light/light_scene.h"
-#include "tests/support/materials.h"
-#include "tests/support/png_bytes.h"
-#include "tests/support/photons.h"
-#include "tests/support/scenes.h"
+#include "tests/support/textured_scene.h"
 
 namespace tempolux {
 namespace {
@@ -20,9 +11,19 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 using test::png_image;
+using test::table_of;
 using test::texture_of_image;
 
-EmissionTable table_of(HandMadeScene& scene) { return build_emission_table({&scene.frame(), 1}); }
+/// Red flux [W] of the indirect photons that 100 000 light paths leave.
+double indirect_flux(const Tracer& tracer, const Lights& lights) {
+  PhotonOptions options;
+  options.photon_count = 100'000;
+  const PhotonTracer photons(tracer, lights, options);
+  double sum = 0;
+  for (const formats::Photon& photon : test::photons_of(photons))
+    if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
+  return sum;
+}
 
 TEST(Unlit, ShowsItselfToTheEyeAndLightsNothing) {
   HandMadeScene scene;
@@ -80,12 +81,7 @@ TEST(TexturedReflectance, PhotonsInASphere) {
   HandMadeScene scene = two_coloured_sphere();
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), table_of(scene));
-  PhotonOptions options;
-  options.photon_count = 100'000;
-  const PhotonTracer photons(tracer, lights, options);
-  double sum = 0;
-  for (const formats::Photon& photon : test::photons_of(photons))
-    if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
+  const double sum = indirect_flux(tracer, lights);
   // Path lengths are geometric with mean 1: sigma about 1.5 / sqrt(100 000) = 0.5 %
   const double expected = 4 * M_PI * kMeanReflectance / (1 - kMeanReflectance);
   EXPECT_NEAR(sum, expected, 4 * 0.005 * expected);
@@ -154,12 +150,7 @@ TEST(TexturedReflectance, PhotonsSeeNothingBesideAChart) {
   scene.add_point_light({0.2f, 0.1f, 0.3f}, Rgb(1.0f));
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), table_of(scene));
-  PhotonOptions options;
-  options.photon_count = 100'000;
-  const PhotonTracer photons(tracer, lights, options);
-  double sum = 0;
-  for (const formats::Photon& photon : test::photons_of(photons))
-    if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
+  const double sum = indirect_flux(tracer, lights);
   // The number of reflections is geometric: sigma = 1 / sqrt(rho N) = 0.35 %
   const double expected = 4 * M_PI * kChart / (1 - kChart);
   EXPECT_NEAR(sum, expected, 4 * 0.0035 * expected);
