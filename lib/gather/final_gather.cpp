@@ -91,6 +91,13 @@ void FinalGather::follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot
 
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
                                      float ray_share) const {
+  IrradianceRecord record = light(from, normal, counts, ray_share);
+  record.radius_unclamped = distance(from, normal, counts);
+  return record;
+}
+
+IrradianceRecord FinalGather::light(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
+                                    float ray_share) const {
   thread_local Hemisphere sky;
   thread_local GatherRays shot;
   std::size_t halvings = 0;
@@ -111,7 +118,6 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     points_noise += shot.sources[i].noise * (kPi / float(strata.cells()));
   }
   IrradianceRecord record = sky.record(from, normal);
-  record.radius_unclamped = distance(from, normal, counts);
   record.noise = sky.noise(key);
   record.points_noise = points_noise;
   add_explicit(from, key, record, counts);

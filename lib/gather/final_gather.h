@@ -49,6 +49,8 @@ class FinalGather {
   /// variance; place_records() measures by how much. ray_share in [1/8, 1]: the share of `rays` to send, rounded up to
   /// a power of two.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
+  /// gather() without distance(): radius_unclamped is not set.
+  IrradianceRecord light(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Computes the light along the rays. If the surface has a coat, multiplies the light by Bsdf::arrival_weight, as for
   /// photons: a coat lets less light pass at grazing angles. The absorbing solid around `from` absorbs along the rays'
   /// first parts.

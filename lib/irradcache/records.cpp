@@ -159,6 +159,13 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
                   [&](const Entry& entry) { return (sum += weight_of(entry, position, normal)) >= weight; });
 }
 
+void RecordStore::for_each_valid(Vec3 position, Vec3 normal, const std::function<void(std::uint32_t)>& found) const {
+  any_near(position, normal, [&](const Entry& entry) {
+    if (weight_of(entry, position, normal) > 0) found(entry.record);
+    return false;
+  });
+}
+
 void RecordStore::complete_noise(std::size_t first, float factor) {
   for (std::size_t i = first; i < records_.size(); ++i)
     records_[i].noise = records_[i].noise * factor + records_[i].points_noise;

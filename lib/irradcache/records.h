@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -75,6 +76,8 @@ class RecordStore {
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
   /// True if the sum of the weights at the place is at least `weight`.
   bool covers(Vec3 position, Vec3 normal, float weight) const;
+  /// Calls found(number) for each record that is valid at the place.
+  void for_each_valid(Vec3 position, Vec3 normal, const std::function<void(std::uint32_t)>& found) const;
   /// Completes IrradianceRecord::noise of the records from `first` on, which so far is the noise of their gather rays:
   /// multiplies it by `factor` and adds points_noise.
   void complete_noise(std::size_t first, float factor);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "lib/gather/world_records.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/known_light.h"
 #include "lib/scene/moving_objects.h"
@@ -11,9 +12,10 @@
 namespace tempolux {
 namespace {
 
-/// Factor of PlacementOptions::min_weight for the cameras of all frames but the first. With the full min_weight, a
-/// later frame would get new records all over the picture, at all places that records of earlier frames barely cover.
-constexpr float kLaterWeight = 0.5f;
+/// Factor of PlacementOptions::min_weight where records of the world leave gaps: on movers, and on surfaces that lines
+/// between places miss. With the full min_weight, pixels would get records of their own all over the picture, at all
+/// places that are barely covered.
+constexpr float kGapWeight = 0.5f;
 
 /// Inputs for the placement of records.
 struct Placement {
@@ -21,25 +23,53 @@ struct Placement {
   const Tracer& tracer;
   PlacementOptions options;
   std::function<bool(const SeenPoint&)> takes;  ///< decides whether a point gets a record; empty: every point does
-  const RecordSource* source = nullptr;         ///< makes the records; null: `gather` does
+  const RecordSource* source = nullptr;         ///< makes records in gaps; null: `gather` does
+  WorldRecords::RayShare share;                 ///< of the rays of records of the world
 };
 
-GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras, RecordStore& store) {
-  GatherCounts counts;
+/// Calls body(number, view) for each of the frames; view finds the seen points that may get records.
+template <class Body>
+void for_each_camera(const Placement& place, const RecordCameras& cameras, const Body& body) {
   for (const int number : cameras.frames) {
     const SceneFrame frame = cameras.at(number);
     const CameraView view(frame, cameras.camera_node, cameras.width, cameras.height);
-    const auto look_at = [&](const Look& look) {
+    body(number, [&](const Look& look) {
       std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
       if (seen && place.takes && !place.takes(*seen)) seen.reset();
       return seen;
-    };
-    PlacementOptions options = place.options;
-    if (number != cameras.frames.front()) options.min_weight *= kLaterWeight;
-    const std::size_t added = place_records(
-        place.gather, {look_at, cameras.width, cameras.height, cameras.progress, place.source}, options, store, counts);
-    cameras.added(number, added);
+    });
   }
+}
+
+/// Covers the places that the records of the world leave open.
+void close_gaps(const Placement& place, const RecordCameras& cameras, std::span<const WantedLight> gaps,
+                RecordStore& store, GatherCounts& counts) {
+  PlacementOptions options = place.options;
+  options.min_weight *= kGapWeight;
+  for_each_camera(place, cameras, [&](int number, const PixelView& view) {
+    std::vector<SeenPoint> points;
+    for (const WantedLight& gap : std::ranges::equal_range(gaps, number, {}, &WantedLight::frame))
+      if (const auto seen = view(gap.where(cameras.width))) points.push_back(*seen);
+    cover_points(place.gather, place.source, options, points, store, counts);
+  });
+}
+
+GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras, RecordStore& store) {
+  GatherCounts counts;
+  WorldRecords world(place.gather, place.tracer, place.options);
+  const auto advance = [&](double done) {
+    if (cameras.progress) cameras.progress(done);
+  };
+  double looked = 0;
+  for_each_camera(place, cameras, [&](int number, const PixelView& view) {
+    world.want(wanted_light(view, number, cameras.width, cameras.height));
+    advance(0.2 * ++looked / double(cameras.frames.size()));
+  });
+  world.choose(counts);
+  advance(0.5);
+  world.gather(place.share, store, counts);
+  advance(0.9);
+  close_gaps(place, cameras, world.gaps(store, place.options.min_weight * kGapWeight), store, counts);
   return counts;
 }
 
@@ -47,7 +77,7 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
 
 GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras,
                                const PlacementOptions& options, RecordStore& store) {
-  return place_for_all({gather, tracer, options, {}}, cameras, store);
+  return place_for_all({gather, tracer, options, {}, nullptr, {}}, cameras, store);
 }
 
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
@@ -58,9 +88,11 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
   // The picture holds f E_y (LocalisedLight), so the squared error of E_y counts f^2 times. A record with f times the
   // rays has 1 / f times the squared error: in all f times that of a record with all rays, which is never more.
+  const auto share = [&](const SeenPoint& seen) {
+    return rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
+  };
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
-    const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
+    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share(seen));
     limit_radius(record, seen.footprint, options);
     input.gather.look_around(seen.surface, record);
     return record;
@@ -69,7 +101,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
     return rides(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
   };
   RecordStore store;
-  const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);
+  const GatherCounts counts =
+      place_for_all({input.gather, input.tracer, options, matters, &source, share}, cameras, store);
   cache.gathered.assign(store.records().begin(), store.records().end());
   cache.least_cosine = store.least_cosine();
   return counts;

@@ -12,16 +12,14 @@
 
 namespace tempolux {
 
-/// Cameras for which records are placed, one after the other. All frames must have the same light and objects.
+/// Cameras for which records are placed. All frames must have the same light and objects.
 struct RecordCameras {
   std::vector<int> frames;
   int camera_node = 0;
   int width = 640, height = 360;  ///< of the pictures, pixels
   /// Returns the scene at a frame; may throw, for example if the light differs from that of the first frame.
   std::function<SceneFrame(int frame)> at;
-  std::function<void(double done)> progress;  ///< called with [0, 1] for each frame; may be empty
-  /// Called after each frame with the number of records that were added for it.
-  std::function<void(int frame, std::size_t records)> added;
+  std::function<void(double done)> progress;  ///< called with [0, 1]; may be empty
 };
 
 /// Adds the records that all cameras need to `store` and returns the counts. The records are valid while nothing but

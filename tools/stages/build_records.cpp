@@ -42,17 +42,13 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
 /// `first`: the result of `at` for the first frame.
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
-  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {},
-                        {}};
+  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}};
   cameras.at = [&options, &first, at = std::move(at)](int number) {
     SceneFrame frame = at(number);
     check_lit_alike(options, frame, first);
     return frame;
   };
   cameras.progress = tool.progress_sink();
-  cameras.added = [&](int number, std::size_t records) {
-    tool.stats().set("records_added." + std::to_string(number), double(records));
-  };
   return cameras;
 }
 

@@ -1,0 +1,65 @@
+// lib/gather/seen_points.h -- the surface points that the pixels of a picture see.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lib/core/random.h"
+#include "lib/scene/surface_point.h"
+
+namespace tempolux {
+
+/// A surface point that a camera sees at a pixel, directly or through mirrors and glass.
+struct SeenPoint {
+  SurfacePoint surface;
+  Vec3 normal;             ///< shading normal on the side seen
+  float footprint = 0;     ///< m: size of a pixel at the point
+  bool by_choice = false;  ///< true if the path chose one of several directions at a surface
+  /// The path's throughput [1] between point and camera: transmittance and reflectance on the path, divided by the
+  /// probabilities of the chosen branches. With Look::random the mean of passed x (radiance of the point) is the
+  /// radiance that the camera receives.
+  Rgb passed{1.0f};
+};
+
+/// A raster position of a picture, in pixels. Where the path forks (glass, gloss), `random` chooses the branch; without
+/// `random` the path takes the more probable branch.
+struct Look {
+  float x = 0, y = 0;
+  std::optional<PathRandom> random;
+};
+/// Finds the point that a raster position sees; none if no indirect light is needed there. Must be thread-safe.
+using PixelView = std::function<std::optional<SeenPoint>(const Look&)>;
+
+/// The properties of a pixel's seen point that decide whether an edge lies between two pixels.
+struct Glimpse {
+  Vec3 position, normal;
+  float footprint = 0;
+  std::uint32_t object = 0;
+  bool any = false, by_choice = false;
+
+  Glimpse() = default;
+  explicit Glimpse(const SeenPoint& seen)
+      : position(seen.surface.position),
+        normal(seen.normal),
+        footprint(seen.footprint),
+        object(seen.surface.object),
+        any(true),
+        by_choice(seen.by_choice) {}
+  /// True if an edge may lie between the centres of these two neighbouring pixels.
+  bool parted_from(const Glimpse& other) const;
+};
+
+/// Pixels at edges, row by row. If two pixels that share a side show different surfaces (parted_from), both are edge
+/// pixels. A pixel whose path chose one of several directions at a surface (SeenPoint::by_choice) is one, too.
+std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height);
+
+/// Number of further raster positions in an edge pixel, so that the samples of its frame are seen, too.
+inline constexpr std::uint32_t kEdgeLooks = 4;
+/// The centre of a pixel; pixel = y width + x.
+Look centre_look(std::size_t pixel, int width);
+/// Raster position number k < kEdgeLooks of an edge pixel.
+Look edge_look(std::size_t pixel, int width, std::uint32_t k);
+
+}  // namespace tempolux
