@@ -104,6 +104,9 @@ std::optional<WorldRecords::Member> WorldRecords::member_at(const WorldPlace& pl
   record.normal = seen.normal;
   record.object = seen.surface.object;
   record.radius_unclamped = member.range = gather_.distance(seen.surface, seen.normal, counts);
+  // A place that sees other surfaces closer than a pixel lies in a crack, mostly out of sight, and is dark. With the
+  // smallest radius of 4 pixels its record would darken places in sight.
+  if (member.range < seen.footprint) return std::nullopt;
   limit_radius(record, seen.footprint, limited(member.most_radius));
   gather_.look_around(seen.surface, record);
   return member;
