@@ -53,6 +53,18 @@ for header in lib/scene/gltf_model.h; do
   others=$(grep -rlF --include='*.h' --include='*.cpp' "\"$header\"" lib tools modules | grep -v "^${header%/*}/")
   [ -z "$others" ] || { echo "$header is private to ${header%/*}, but included by:" $others; bad=1; }
 done
+# JSON's types enter headers by json_file.h, but for the header of the glTF gate
+others=$(grep -rlF --include='*.h' '"lib/core/json.h"' lib tools modules | grep -v '^lib/scene/gltf_json.h$')
+[ -z "$others" ] || { echo "lib/core/json.h is for .cpp files and lib/scene/gltf_json.h, but included by:" $others; bad=1; }
+others=$(grep -rlF --include='*.h' --include='*.cpp' '"lib/scene/gltf_json.h"' lib tools modules | grep -v '^lib/scene/gltf_')
+[ -z "$others" ] || { echo "lib/scene/gltf_json.h is private to lib/scene/gltf_*, but included by:" $others; bad=1; }
+# lib/README.md says in which order folders and their headers are read
+read_first=$(sed -n '/^## What to read first/,/^## How/s/^| \([a-z\\_]*\) | \(.*\) |$/\1 \2/p' lib/README.md | tr -d '\\')
+for folder in lib/*/; do
+  headers=$(echo "$read_first" | sed -n "s|^$(basename $folder) ||p" | grep -oE '[a-z0-9_]+\.h')
+  [ -n "$headers" ] || { echo "$folder: lib/README.md does not say what to read first"; bad=1; }
+  for header in $headers; do [ -e "$folder$header" ] || { echo "$folder$header is named in lib/README.md and missing"; bad=1; }; done
+done
 tbb=$(grep -rlE '^ *#include [<"]tbb/' lib tools formats 2>/dev/null | grep -v '^lib/core/'); [ -z "$tbb" ] || { echo "tbb outside lib/core: $tbb"; bad=1; }
 if grep -rnE '\b(exit|abort|getenv)\(' lib formats --include='*.cpp' --include='*.h' | grep -v 'check.h'; then echo '^ lib and formats call no exit and read no environment'; bad=1; fi
 # a main declares options and calls tools/stages

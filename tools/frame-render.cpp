@@ -6,6 +6,7 @@
 //                  -o f.0012.exr
 //
 // Channels and attributes: formats/frames/frames.md.
+#include "lib/core/formatted.h"
 #include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 #include "tools/stages/render_frame.h"
@@ -41,9 +42,10 @@ void add_light_options(tools::Tool& tool, tools::RenderOptions& options) {
   tool.number_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours, 2, kMaxNeighbours,
                      "photons per density estimate of caustic light: fewer are sharper, more are smoother");
   app.add_option("--influence", options.light.influence.low,
-                 "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
-                 "static records, updated by dynamic photons; from 2.5 times this influence on it is gathered anew; "
-                 "blended in between")
+                 formatted("up to this influence of the movers, as a share of the static irradiance, indirect light is "
+                           "read from static records, updated by dynamic photons; from %.3g times this influence on it "
+                           "is gathered anew; blended in between",
+                           double(InfluenceThresholds{}.ratio())))
       ->capture_default_str()
       ->check(tools::number_above(0));
 }
@@ -56,9 +58,11 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
                      "samples per pixel; with --pixel-error the number of first samples");
   tool.number_option(
       "--pixel-error", options.pixel_error, -1.0, 1.0,
-      "relative error that a pixel may have: noisy pixels get further samples (docs/pixels.md); 0: no further "
-      "samples; -1: 0.01 with photons or a cache, else 0; with the channels halves and coverage, for st-filter, edges "
-      "between surfaces get more samples and the inside of surfaces fewer");
+      formatted(
+          "relative error that a pixel may have: noisy pixels get further samples (docs/pixels.md); 0: no further "
+          "samples; -1: %g with photons or a cache, else 0; with the channels halves and coverage, for "
+          "st-filter, edges between surfaces get more samples and the inside of surfaces fewer",
+          options.pixel_error_of_files));
   tool.number_option(
       "--seen-error", options.frame.seen_error, 0.0, 255.0,
       "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "

@@ -13,6 +13,7 @@
 
 #include "formats/error.h"
 #include "lib/aqm/vision_model.h"
+#include "lib/core/formatted.h"
 #include "lib/image/channel_groups.h"
 #include "lib/render/data_channels.h"
 #include "lib/warp/warped_image.h"
@@ -58,7 +59,9 @@ void add_options(tools::Tool& tool, tools::WarpFramesOptions& options) {
   tool.number_option("--edge-share", options.warp.edge_share, 0, tools::kNoLimit,
                      "edge pixels are masked if the keys differ by more than this share of the light");
   tool.number_option("--slow", options.warp.slow_deg_per_s, -1, tools::kNoLimit,
-                     "moving pixels slower than this are masked, degrees/s; -1: 1.41, half a pixel between two frames");
+                     formatted("moving pixels slower than this are masked, degrees/s; -1: %.3g, half a pixel between "
+                               "two frames",
+                               vision::slow_speed(tools::kPixelsPerDegree)));
   tool.choice_option("--compression", options.compression, {"zip", "none"}, "EXR compression");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }

@@ -4,6 +4,9 @@
 //     photon-trace room.glb -o - | photonmap-split - --low low.photons --high high.photons --energy 8
 //
 // Method: docs/methods/split.md. Formats: formats/photons/photons.md, formats/irradpoints/irradpoints.md.
+#include <cmath>
+
+#include "lib/core/formatted.h"
 #include "tools/common/cli.h"
 #include "tools/stages/split_files.h"
 
@@ -18,11 +21,12 @@ int main(int argc, char** argv) {
       ->required();
   tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high")->required();
   tool.number_option("--energy", options.limit, 0, tools::kNoLimit,
-                     "a cell keeps at most this multiple of the mean irradiance in the low part");
-  tool.auto_option(
-          "--cell", options.cell, 0, tools::kNoLimit,
-          "edge of a cell, metres; auto: four mean distances of points, or 16 of photons (256 photons per cell "
-          "on average)")
+                     "times the mean irradiance, W/m^2, of all cells with light: the irradiance that the low part of a "
+                     "cell has at most");
+  tool.auto_option("--cell", options.cell, 0, tools::kNoLimit,
+                   formatted("edge of a cell, metres; auto: %g mean distances of points, or %g of photons (%zu photons "
+                             "per cell on average)",
+                             options.spacings_per_cell, std::sqrt(double(kRecordsPerCell)), kRecordsPerCell))
       ->type_name("METRES");
   tool.common_options(0);
   return tool.run([&] {

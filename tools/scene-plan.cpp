@@ -10,6 +10,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/formatted.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/estimate.h"
 #include "tools/common/cli.h"
@@ -47,6 +48,14 @@ void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
                      "on: bright points are sampled explicitly; auto: where a pilot finds that it pays");
 }
 
+/// The shares of pixels in which a viewer may see errors, as "draft 20%, final 5%".
+std::string seen_of_presets() {
+  Wish draft, final;
+  draft.quality = Quality::draft;
+  final.quality = Quality::final;
+  return formatted("draft %g%%, final %g%%", 100 * draft.seen(), 100 * final.seen());
+}
+
 /// Options that replace figures of the preset.
 void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   CLI::App& app = tool.app();
@@ -63,7 +72,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   text("--measured", options.measured, "FILE",
        "preview: photons of each segment by what `make measure` has written into this file");
   app.add_option("--aqm", options.aqm,
-                 "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
+                 "with --measured: share of the pixels in which a viewer may see errors; without: " + seen_of_presets())
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent());
   tool.number_option("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
@@ -82,7 +91,8 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   tool.number_option("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
   app.add_option("--halve-above", wish.threshold,
                  "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
-                 "(AQM); without: draft 20%, final 5%")
+                 "(AQM); without: " +
+                     seen_of_presets())
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent());
   tool.auto_option("--exposure", wish.exposure, -200, 200,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/core/formatted.h"
 #include "tools/common/cli.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
@@ -33,8 +34,11 @@ void add_options(tools::Tool& tool, tools::SmokeOptions& options) {
   tool.number_option("--light-samples", options.compose.light_samples, 1, 4096, "samples of the lamps for each ray");
   tool.number_option("--cell", options.light.cell, 0, tools::kNoLimit,
                      "edge of the cells in which photons are summed, m; 0: that of the finest voxel");
-  tool.number_option("--filter-width", options.light.filter_width, 0, 64,
-                     "standard deviation of the Gaussian that smooths them, cells; 0: so wide that 256 photons count");
+  tool.number_option(
+      "--filter-width", options.light.filter_width, 0, 64,
+      formatted("standard deviation of the Gaussian that smooths them, cells; 0: so wide that %g photons "
+                "count",
+                double(kPhotonsInFilter)));
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }

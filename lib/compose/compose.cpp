@@ -144,8 +144,10 @@ Rgb Marcher::sampled_light(const Ray& ray, float whole, const PixelRandom& rando
     const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
     const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
     sum += medium.albedo * weight *
-           scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
-                                {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
+           scattered_lamp_light(
+               scene.tracer, scene.lights, point,
+               {random.get2(bounce, Purpose::light_point), false, {random.hashed(), bounce, way_shadow_of_medium}},
+               counts.shadow);
     add_ray(point, bounce, weight, random);
   }
   for (std::size_t i = before; i < scattered.size(); ++i) scattered[i].weight *= whole / float(samples);

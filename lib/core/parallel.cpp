@@ -21,8 +21,6 @@ struct ThreadLimit::State {
 ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>(threads)) {}
 ThreadLimit::~ThreadLimit() = default;
 
-void run_isolated(const std::function<void()>& body) { tbb::this_task_arena::isolate(body); }
-
 int usable_processor_count() {
   cpu_set_t set;
   CPU_ZERO(&set);

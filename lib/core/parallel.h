@@ -42,8 +42,4 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take);
 
-/// Runs `body` so that waiting for a parallel loop inside it does not make this thread take up other work, which might
-/// need a lock that the thread holds.
-void run_isolated(const std::function<void()>& body);
-
 }  // namespace tempolux

@@ -19,9 +19,6 @@ constexpr double kShift = 0.38196601125;  // 2 - golden ratio
 /// records the relative error of the area is one half (rms; measured in tests/lib/density/split_light_test.cpp), which
 /// is too uncertain to call a cell bright.
 constexpr std::uint64_t kFewest = 8;
-/// Records per cell. If areas come from hulls, fewer records underestimate the area: on S3 (frame 1, 200 000 paths, lit
-/// area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records on average.
-constexpr std::size_t kRecordsPerCell = 256;
 /// Records that CellEdge keeps. They fill 64 cells, so the number of cells, and with it the edge squared, has an error
 /// of about 1 / sqrt(64) = 12 %: less than a step of CellEdge::edge(), which is 41 % of the edge squared.
 constexpr std::size_t kPlaces = 64 * kRecordsPerCell;

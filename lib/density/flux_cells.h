@@ -76,9 +76,14 @@ class FluxCells {
   double area_ = 0, flux_ = 0;
 };
 
-/// Finds the edge of cells that hold 256 records each on average: on surfaces, squares 16 mean distances wide. Keeps
-/// only the 16384 records whose positions have the smallest hashes, so that memory is bounded and the result does not
-/// depend on the order of the records.
+/// Records in a cell of CellEdge, on average. If areas come from hulls, fewer records underestimate the area: on S3
+/// (frame 1, 200 000 paths, lit area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and
+/// 380 records on average.
+inline constexpr std::size_t kRecordsPerCell = 256;
+
+/// Finds the edge of cells that hold kRecordsPerCell records each on average: on surfaces, squares of so many mean
+/// distances as its root wide. Keeps only the 16384 records whose positions have the smallest hashes, so that memory is
+/// bounded and the result does not depend on the order of the records.
 class CellEdge {
  public:
   void add(Vec3 position);

@@ -13,7 +13,7 @@ struct FitOptions {
 
 /// For each half h, pixel p, layer and channel: the value at p of the plane
 ///     a + b dx + c dy   with the least sum over q of   weight(p, q) (light(q) - a - b dx - c dy)^2,
-/// q = p + (dx, dy) in the window. The weight is from[h].weight(q) on p's surface (PixelSurfaces::same), else 0. If
+/// q = p + (dx, dy) in the window. The weight is from[h].weight(q) on p's surface (SurfaceEight), else 0. If
 /// there are guides, the weight is multiplied by value_weight() of the other half's guides, (*guides)[1 - h]: a half's
 /// own noise must not choose its weights. A plane keeps a linear gradient of light also at the border of a surface,
 /// where a weighted mean would not. The result is negative only if the weighted mean is. If no pixel of the window has

@@ -318,8 +318,10 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   const PathRandom random(from.key, kMediaNumbers + 1);
   Rgb light{0.0f};
   if (!lights_.empty())
-    light = at.albedo * scattered_lamp_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
-                                             {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
+    light = at.albedo *
+            scattered_lamp_light(tracer_, lights_, at,
+                                 {random.get2(1, Purpose::light_point), true, {random, 1, way_shadow_of_medium}},
+                                 to.counts.shadow_rays);
   Rgb weight = from.weight * at.albedo;
   if (!survives(weight, kLargestSurvivalInMedia, random.get1(1, Purpose::roulette))) return light;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));

@@ -18,6 +18,7 @@ struct InfluenceThresholds {
 
   /// Share of E_y: 0 up to low, 1 from high on, t^2 (3 - 2 t) with t = (I - low) / (high - low) in between.
   float gathered_share(float influence) const;
+  float ratio() const { return high / low; }
 };
 
 /// The change of a static record by the dynamic photons of a frame.

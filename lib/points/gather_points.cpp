@@ -100,7 +100,7 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
   points.points.insert(points.points.end(), own_points, placed.points.end());
   std::vector<std::uint32_t> own;
   for (std::size_t i = static_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
-  estimate_points(whole, lights, on_movers, dynamic_shift, options, own, points.points);
+  estimate_points(whole, lights, {on_movers, dynamic_shift}, options, own, points.points);
   return counts;
 }
 

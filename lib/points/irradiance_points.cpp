@@ -145,28 +145,39 @@ bool any_bent(const SceneFrame& frame) {
   });
 }
 
-/// How the surface scatters at a point.
+/// How the surface scatters at a point. All normals are unit vectors on the point's side.
 struct Scattering {
-  Vec3 normal, smooth;       ///< shading normal on the point's side, with and without the normal map
+  Vec3 normal;               ///< shading normal, which a normal map may have turned
+  Vec3 smooth;               ///< shading normal without the normal map
   std::optional<Bsdf> coat;  ///< the Bsdf if the Lambert lobe lies under a coat
 
   LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
 };
 
+/// Scattering of a flat surface without a coat.
 Scattering plain(const IrradiancePoint& point) { return {point.normal, point.normal, {}}; }
+
+/// The surface on which a point was placed. A ray from 4 offsets above the point to 4 offsets below finds it; empty if
+/// the ray finds none. offset: distance of rays from surfaces, m.
+std::optional<SurfacePoint> surface_under(const Tracer& tracer, const IrradiancePoint& point, float offset) {
+  const float above = 4 * offset;
+  Hit hit;
+  if (!tracer.intersect({point.position + point.normal * above, -point.normal, 0, 2 * above, true}, hit)) return {};
+  return tracer.surface_point(hit);
+}
 
 /// Scattering at a point; plain() if no ray finds the point's surface.
 Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
-  Hit hit;
-  if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
-    return plain(point);
-  SurfacePoint there = tracer.surface_point(hit);
-  const Vec3 smooth = face_forward(there.normal, point.normal);
-  const SurfaceMaterial material(tracer.frame(), there);
-  const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
-  Scattering found{face_forward(there.normal, point.normal), smooth, {}};
-  if (bsdf.has_diffuse() && bsdf.has_specular()) found.coat = bsdf;
-  return found;
+  std::optional<SurfacePoint> surface = surface_under(tracer, point, offset);
+  if (!surface) return plain(point);
+  Scattering scattering;
+  scattering.smooth = face_forward(surface->normal, point.normal);
+  const SurfaceMaterial material(tracer.frame(), *surface);  // applies the normal map to surface->normal
+  scattering.normal = face_forward(surface->normal, point.normal);
+  const bool on_front = dot(surface->normal_geometric, point.normal) > 0;
+  const Bsdf bsdf(material, on_front);
+  if (bsdf.has_diffuse() && bsdf.has_specular()) scattering.coat = bsdf;
+  return scattering;
 }
 
 /// Samples direct light at points.
@@ -300,12 +311,13 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
 
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::vector<IrradiancePoint>& points) {
-  estimate_points(tracer, lights, photons, photon_shift, options, all_of(points), points);
+  estimate_points(tracer, lights, {photons, photon_shift}, options, all_of(points), points);
 }
 
-void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
+void estimate_points(const Tracer& tracer, const Lights& lights, const ShiftedPhotons& shifted,
                      const PointOptions& options, std::span<const std::uint32_t> which,
                      std::vector<IrradiancePoint>& points) {
+  const auto& [photons, photon_shift] = shifted;
   // Photons far from the points were not aimed and are far apart, so only photons in the region determine the radius.
   std::function<bool(Vec3)> where;
   if (const std::vector<AimSphere> region = region_of_points(tracer.frame(), options.seen); !region.empty())

@@ -77,8 +77,13 @@ inline SurfacePoint surface_of(const IrradiancePoint& point, float offset) {
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::vector<IrradiancePoint>& points);
 
+/// Photons whose positions lie in scene space after `shift` [m] is added.
+struct ShiftedPhotons {
+  PhotonView photons;
+  Vec3d shift{};
+};
 /// Estimates only the points with these indices, with the same results as if all points were estimated.
-void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
+void estimate_points(const Tracer& tracer, const Lights& lights, const ShiftedPhotons& photons,
                      const PointOptions& options, std::span<const std::uint32_t> which,
                      std::vector<IrradiancePoint>& points);
 /// Estimates the caustic light of all points as estimate_points() does, with this density.

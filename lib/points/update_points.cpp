@@ -110,7 +110,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   for (const IrradiancePoint& point : points) caustic.push_back(point.caustic);
   PointOptions limited = options;
   limited.max_radius = density.max_radius;
-  if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
+  if (!anew.empty()) estimate_points(in.whole, in.lights, {near, {}}, limited, anew, points);
 
   // A caustic photon lights its own footprint, so one changed photon can reach any point. If the dynamic map holds a
   // caustic photon, re-estimate caustic light at every point.

@@ -181,7 +181,7 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, PathState& state) co
   std::uint64_t shadow_rays = 0;
   (*state.result)[state.path.layer()] +=
       state.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
-                                              state.random.get2(state.bounce, Purpose::light_point), true, bits,
+                                              {state.random.get2(state.bounce, Purpose::light_point), true, bits},
                                               shadow_rays);
   count(shadow_rays, counts_.shadow, state);
   if (!survives(state, kLargestSurvivalInMedia)) return false;

@@ -63,7 +63,7 @@ SegmentScene::SegmentScene(const Scene& scene, Segment segment, const TimeOption
   const std::vector<Affine> world = animator_->world_from_node(segment_.first / options_.fps);
   sharing_ = std::make_shared<const Sharing>(scene);
   static_surfaces_ =
-      place_surfaces(scene, *animator_, *sharing_, segment_, segment_.first / options_.fps, world, false);
+      place_surfaces(scene, *animator_, *sharing_, segment_, {segment_.first / options_.fps, world}, false);
   if (!segment_.world_bounds.empty()) {
     bounds_.add(Vec3(segment_.world_bounds.lower - segment_.origin));
     bounds_.add(Vec3(segment_.world_bounds.upper - segment_.origin));
@@ -87,7 +87,8 @@ SceneFrame SegmentScene::at(double frame) const {
   at.segment = segment_;
   at.surfaces = static_surfaces_;
   at.static_count = at.surfaces.size();
-  const std::vector<Surface> moving = place_surfaces(*scene_, *animator_, *sharing_, segment_, at.time_s, world, true);
+  const std::vector<Surface> moving =
+      place_surfaces(*scene_, *animator_, *sharing_, segment_, {at.time_s, world}, true);
   at.surfaces.insert(at.surfaces.end(), moving.begin(), moving.end());
   at.materials = materials_stay_ ? scene_->materials : animator_->materials(at.time_s);
   at.images = scene_->images;

@@ -1,21 +1,43 @@
 #include "lib/scene/camera_extras.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "lib/core/formatted.h"
 #include "lib/core/json.h"
+#include "lib/scene/camera_properties.h"
 
 namespace tempolux {
 namespace {
 
-constexpr double kMost = 1e9;  ///< largest value that is read: millimetres, metres and frames beyond it are errors
+constexpr double kMost = 1e9;  ///< largest first frame that is read
 
 using Json = nlohmann::json;
-
-bool fits(const Json& value) { return value.is_number() && value.get<double>() >= 0 && value.get<double>() <= kMost; }
 
 /// The value at a frame of a list that begins at `first`.
 double at_frame(const std::vector<double>& list, int first, int frame) {
   return list[std::size_t(std::clamp<long>(long(frame) - first, 0, long(list.size()) - 1))];
+}
+
+/// The numbers of a property; empty if the value is none that the property can have.
+std::vector<double> numbers_of(const CameraProperty& property, const Json& value) {
+  if (property.role == CameraRole::position) {
+    const std::string word = value.is_string() ? value.get<std::string>() : "";
+    const auto found = std::ranges::find(kShutterPositions, word);
+    if (found == kShutterPositions.end()) return {};
+    return {double(found - kShutterPositions.begin())};
+  }
+  const Json list = value.is_array() ? value : Json::array({value});
+  const auto fits = [&](const Json& number) {
+    return number.is_number() && number.get<double>() >= 0 && number.get<double>() <= property.upper;
+  };
+  return std::ranges::all_of(list, fits) ? list.get<std::vector<double>>() : std::vector<double>();
+}
+
+std::string wanted(const CameraProperty& property) {
+  return property.role == CameraRole::position
+             ? "center, start or end"
+             : "a number from 0 to " + formatted("%g", property.upper) + ", or a list of such numbers by frame";
 }
 
 }  // namespace
@@ -25,44 +47,37 @@ CameraExtras read_camera_extras(const std::string& extras, const std::string& pl
   CameraExtras read;
   const Json object = Json::parse(extras, nullptr, false);
   if (!object.is_object()) return read;
-  const auto leave_out = [&](const char* key, const char* wanted) {
-    warnings.push_back(place + ".extras." + key + ": not read: must be " + wanted);
+  const auto leave_out = [&](std::string_view key, const std::string& wanted) {
+    warnings.push_back(place + ".extras." + std::string(key) + ": not read: must be " + wanted);
   };
-  const auto numbers = [&](const char* key, std::vector<double>& to) {
-    const auto found = object.find(key);
-    if (found == object.end() || found->is_null()) return;
-    const Json list = found->is_array() ? *found : Json::array({*found});
-    if (list.empty() || !std::ranges::all_of(list, fits))
-      return leave_out(key, "a number from 0 to 1e9, or a list of such numbers by frame");
-    to = list.get<std::vector<double>>();
-  };
-  numbers("lens_mm", read.lens_mm);
-  numbers("f_stop", read.f_stop);
-  numbers("focus_m", read.focus_m);
-  numbers("shutter_frames", read.shutter_frames);
+  for (const CameraProperty& property : camera_properties()) {
+    std::vector<double>& list = read.lists.emplace_back();
+    const auto found = property.key.empty() ? object.end() : object.find(property.key);
+    if (found == object.end() || found->is_null()) continue;
+    list = numbers_of(property, *found);
+    if (list.empty()) leave_out(property.key, wanted(property));
+  }
   if (const auto first = object.find("first_frame"); first != object.end()) {
     if (first->is_number_integer() && std::abs(first->get<double>()) <= kMost) read.first_frame = first->get<int>();
     else leave_out("first_frame", "a whole number");
-  }
-  if (const auto position = object.find("shutter_position"); position != object.end()) {
-    const std::string word = position->is_string() ? position->get<std::string>() : "";
-    if (word == "start") read.shutter = Camera::Shutter::start;
-    if (word == "end") read.shutter = Camera::Shutter::end;
-    if (word != "center" && word != "start" && word != "end") leave_out("shutter_position", "center, start or end");
   }
   return read;
 }
 
 void CameraExtras::apply(int frame, Camera& camera) const {
-  if (!lens_mm.empty() && !f_stop.empty() && camera.kind == Camera::Kind::perspective) {
-    const double stop = at_frame(f_stop, first_frame, frame);
-    camera.lens_radius_m = stop > 0 ? at_frame(lens_mm, first_frame, frame) / 1000 / (2 * stop) : 0;
+  std::optional<double> lens_mm, f_stop;
+  for (std::size_t row = 0; row < lists.size(); ++row) {
+    if (lists[row].empty()) continue;
+    const CameraProperty& property = camera_properties()[row];
+    const double number = at_frame(lists[row], first_frame, frame);
+    if (property.role == CameraRole::lens) lens_mm = number;
+    else if (property.role == CameraRole::f_stop) f_stop = number;
+    else if (const auto* shutter = std::get_if<Camera::Shutter Camera::*>(&property.member))
+      camera.** shutter = Camera::Shutter(int(number));
+    else camera.*std::get<double Camera::*>(property.member) = number;
   }
-  if (!focus_m.empty()) camera.focus_m = at_frame(focus_m, first_frame, frame);
-  if (!shutter_frames.empty()) {
-    camera.shutter_frames = at_frame(shutter_frames, first_frame, frame);
-    camera.shutter = shutter;
-  }
+  if (lens_mm && f_stop && camera.kind == Camera::Kind::perspective)
+    camera.lens_radius_m = *f_stop > 0 ? *lens_mm / 1000 / (2 * *f_stop) : 0;
 }
 
 }  // namespace tempolux

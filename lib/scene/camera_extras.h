@@ -8,9 +8,9 @@
 
 namespace tempolux {
 
-/// Reads lens_mm, f_stop, focus_m, shutter_frames (each a number of at least 0, or a list of such numbers by frame),
-/// first_frame and shutter_position (center, start, end) from a node's `extras`, a JSON text. Other properties are not
-/// looked at. A value that is none of these is left out with a line in `warnings` that begins with `place`.
+/// Reads the properties of the table in camera_properties.h that have a key, and first_frame, from a node's `extras`, a
+/// JSON text. Numbers are at least 0, and may be lists of numbers by frame. Other properties are not looked at. A value
+/// that a property cannot have is left out with a line in `warnings` that begins with `place`.
 CameraExtras read_camera_extras(const std::string& extras, const std::string& place,
                                 std::vector<std::string>& warnings);
 

@@ -57,13 +57,13 @@ std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   const std::vector<Affine> first = animator.world_from_node(0);
   std::vector<Piece> pieces;
   segment.node_moves.assign(scene.nodes.size(), 0);
-  add_surfaces(place_surfaces(scene, animator, sharing, segment, 0, first, false), pieces);
+  add_surfaces(place_surfaces(scene, animator, sharing, segment, {0, first}, false), pieces);
   for (int i = 1; i < kTimes && animator.anything_animated(); ++i) {
     const double time = scene.duration_s * i / (kTimes - 1);
     const std::vector<Affine> world = animator.world_from_node(time);
     for (std::size_t n = 0; n < scene.nodes.size(); ++n)
       segment.node_moves[n] = deforms(scene, scene.nodes[n]) || !(world[n] == first[n]);
-    add_surfaces(place_surfaces(scene, animator, sharing, segment, time, world, true), pieces);
+    add_surfaces(place_surfaces(scene, animator, sharing, segment, {time, world}, true), pieces);
   }
   return pieces;
 }

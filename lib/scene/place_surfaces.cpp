@@ -118,15 +118,14 @@ std::vector<Affine> places(const Node& node, const Affine& world_from_node) {
 }
 
 std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator, const Sharing& sharing,
-                                    const Segment& segment, double time_s, const std::vector<Affine>& world,
-                                    bool moving) {
+                                    const Segment& segment, const NodesAtTime& nodes, bool moving) {
   std::vector<Surface> surfaces;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
     if (node.mesh < 0 || (segment.node_moves[n] != 0) != moving) continue;
     const bool deforming = deforms(scene, node);
-    const Pose pose = deforming ? animator.pose(n, time_s, world) : Pose{};
-    for (const Affine& place : places(node, world[n])) {
+    const Pose pose = deforming ? animator.pose(n, nodes.time_s, nodes.world_from_node) : Pose{};
+    for (const Affine& place : places(node, nodes.world_from_node[n])) {
       Affine scene_from_node = place;
       scene_from_node.translation = scene_from_node.translation - segment.origin;
       for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives) {

@@ -37,10 +37,15 @@ class Sharing {
 /// World transforms of all occurrences of the node's mesh: one, unless EXT_mesh_gpu_instancing gives more.
 std::vector<Affine> places(const Node& node, const Affine& world_from_node);
 
-/// Surfaces of the nodes that move in the segment, or of all other nodes, in node order, at a time [s] with the
-/// nodes' world transforms. Throws InputError if vertices lie outside kMaxCoordinate.
+/// The nodes at a time.
+struct NodesAtTime {
+  double time_s = 0;
+  const std::vector<Affine>& world_from_node;
+};
+
+/// Surfaces of the nodes that move in the segment, or of all other nodes, in node order. Throws InputError if vertices
+/// lie outside kMaxCoordinate.
 std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator, const Sharing& sharing,
-                                    const Segment& segment, double time_s, const std::vector<Affine>& world_from_node,
-                                    bool moving);
+                                    const Segment& segment, const NodesAtTime& nodes, bool moving);
 
 }  // namespace tempolux

@@ -132,7 +132,7 @@ struct Skin {
   std::vector<Affine> joint_from_mesh;  ///< inverse bind matrices
 };
 
-/// A camera looks along its node's -Z, with +Y up.
+/// A camera looks along its node's -Z, with +Y up. A member must have a row in camera_properties.cpp.
 struct Camera {
   enum class Kind { perspective, orthographic };
   enum class Shutter { centre, start, end };  ///< where the frame's time lies in the time the shutter is open
@@ -149,12 +149,12 @@ struct Camera {
   Shutter shutter = Shutter::centre;
 };
 
-/// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them). Each list
-/// holds one number for all frames, or one per frame from frame `first_frame` on; empty: the file does not say.
+/// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them).
 struct CameraExtras {
   int first_frame = 0;
-  std::vector<double> lens_mm, f_stop, focus_m, shutter_frames;
-  Camera::Shutter shutter = Camera::Shutter::centre;
+  /// Of each row of the table in camera_properties.h: one number for all frames, or one per frame from `first_frame`
+  /// on; empty: the file does not say.
+  std::vector<std::vector<double>> lists;
 
   /// Sets lens and shutter of a camera to their values at a frame; frames outside of a list have its first or last one.
   /// The radius of a perspective camera's lens is lens / (2 f_stop); an orthographic camera has no lens.

@@ -5,6 +5,7 @@
 
 #include "formats/hash.h"
 #include "lib/image/texture_images.h"
+#include "lib/scene/camera_properties.h"
 #include "lib/scene/material_properties.h"
 
 namespace tempolux {
@@ -97,6 +98,23 @@ void add_material(Hasher& hasher, const Scene& scene, const Material& material) 
   if (material.textures->normal) hasher.add(material.textures->normal_scale);
 }
 
+/// Adds a member of a camera, unless it has no effect or another row has added it.
+void add_property(Hasher& hasher, const Camera& camera, const CameraProperty& property) {
+  if (property.role == CameraRole::f_stop) return;
+  if (property.role == CameraRole::perspective && camera.kind != Camera::Kind::perspective) return;
+  if (property.role == CameraRole::orthographic && camera.kind != Camera::Kind::orthographic) return;
+  std::visit(
+      [&](auto member) {
+        const auto& value = camera.*member;
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_enum_v<Value>) hasher.add(std::uint32_t(value));
+        else if constexpr (std::is_same_v<Value, double>) hasher.add(value);
+        else if (value != Value{})
+          for (const double number : value) hasher.add(number);
+      },
+      property.member);
+}
+
 }  // namespace
 
 std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces, LeftOut left_out) {
@@ -177,16 +195,11 @@ formats::Identity identity_of(const SceneFrame& frame) {
 std::string camera_hash(const PlacedCamera& placed) {
   Hasher hasher;
   hasher.add(std::string_view("camera 2"));
-  hasher.add(std::uint32_t(placed.camera.kind));
-  hasher.add(placed.camera.kind == Camera::Kind::perspective ? placed.camera.yfov_rad : placed.camera.ymag_m);
+  for (const CameraProperty& property : camera_properties())
+    if (property.projects()) add_property(hasher, placed.camera, property);
   hasher.add(placed.scene_from_camera);
-  if (const auto [right, up] = placed.camera.lens_shift; right != 0 || up != 0) {
-    hasher.add(right);
-    hasher.add(up);
-  }
-  const Camera& camera = placed.camera;
-  for (const double value : {camera.lens_radius_m, camera.focus_m, camera.shutter_frames}) hasher.add(value);
-  hasher.add(std::uint32_t(camera.shutter));
+  for (const CameraProperty& property : camera_properties())
+    if (!property.projects()) add_property(hasher, placed.camera, property);
   return hasher.hex();
 }
 

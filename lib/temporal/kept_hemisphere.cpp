@@ -24,16 +24,16 @@ void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
   keep_radiance(kept, cell, rgb_of(formats::decode_rgbe(kept.samples[cell].rgbe)) * ratio);
 }
 
-void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
-              bool may_anchor, SampleUnits units) {
+void keep_ray(KeptHemisphere& kept, std::uint32_t cell, const FoundByRay& found, SampleUnits units) {
+  const RadianceSource& source = found.source;
   formats::RadianceSample& sample = kept.samples[cell];
-  const bool hit = distance < INFINITY, anchored = hit && may_anchor;
+  const bool hit = found.distance < INFINITY, anchored = hit && found.may_anchor;
   sample.flags = std::uint16_t(formats::age_of(sample) | formats::sample_valid | (hit ? 0 : formats::sample_miss) |
                                (source.mover ? formats::sample_dynamic : 0) |
                                (source.partial ? formats::sample_near : 0) | (anchored ? formats::sample_anchored : 0));
-  sample.distance = hit ? units.encode(distance) : std::uint16_t(0);
+  sample.distance = hit ? units.encode(found.distance) : std::uint16_t(0);
   kept.anchors[cell] = anchored ? source.point : kNone;
-  keep_radiance(kept, cell, radiance);
+  keep_radiance(kept, cell, found.radiance);
 }
 
 IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units) {

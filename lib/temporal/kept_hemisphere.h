@@ -52,10 +52,15 @@ struct SampleUnits {
 void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance);
 /// Multiplies a cell's radiance by a ratio, per channel, and stores the result with keep_radiance.
 void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio);
-/// Stores the radiance that a ray found; the sample's age does not change. `may_anchor`: true if the radiance is
-/// proportional to the irradiance of the point that represents the hit.
-void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
-              bool may_anchor, SampleUnits units);
+/// What a gather ray has found.
+struct FoundByRay {
+  Rgb radiance;    ///< W/m^2/sr
+  float distance;  ///< m; infinite if the ray has met nothing
+  const RadianceSource& source;
+  bool may_anchor;  ///< true if the radiance is proportional to the irradiance of the point that represents the hit
+};
+/// Stores what a cell's ray has found; the sample's age does not change.
+void keep_ray(KeptHemisphere& kept, std::uint32_t cell, const FoundByRay& found, SampleUnits units);
 
 /// Computes irradiance and gradients from the samples alone.
 IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units);

@@ -109,8 +109,8 @@ void TemporalGather::trace_cells(const SurfacePoint& place, KeptHemisphere& kept
     RadianceSource& source = shot.sources[i];
     const bool bright = is_bright(scene_, source.point);
     source.partial |= bright;
-    keep_ray(kept, shot.cells[i], shot.radiance[i], shot.distance[i], source,
-             source.point < scene_.anchored_points && !bright, units_);
+    const bool may_anchor = source.point < scene_.anchored_points && !bright;
+    keep_ray(kept, shot.cells[i], {shot.radiance[i], shot.distance[i], source, may_anchor}, units_);
   }
 }
 

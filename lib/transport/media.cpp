@@ -59,19 +59,19 @@ bool collides(const Media& media, const Ray& ray, float end, const PathRandom& r
   return true;
 }
 
-Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh,
-                         const WayBits& bits, std::uint64_t& shadow_rays) {
+Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, const LampDraw& draw,
+                         std::uint64_t& shadow_rays) {
   LightSample light;
-  if (!lights.sample(point.position, {}, u, light)) return Rgb(0.0f);
+  if (!lights.sample(point.position, {}, draw.u, light)) return Rgb(0.0f);
   // Light travels against the direction of the path, so the peak of the phase function lies ahead along the path.
   const float phase = pdf_hg(point.g, point.travel, light.wi);
   Rgb radiance = light.facing_irradiance * phase;
-  if (weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
+  if (draw.weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
   if (is_black(radiance)) return radiance;
   ++shadow_rays;
   SurfacePoint from{};  // without an offset, because there is no surface in a medium
   from.position = point.position;
-  return radiance * transmittance(tracer, spawn_shadow_ray(from, light.position, light.position_offset), bits);
+  return radiance * transmittance(tracer, spawn_shadow_ray(from, light.position, light.position_offset), draw.bits);
 }
 
 }  // namespace tempolux

@@ -47,10 +47,16 @@ struct MediumPoint {
 bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce,
               MediumPoint& point);
 
+/// How a light sample is drawn and counts.
+struct LampDraw {
+  Vec2 u;      ///< chooses the light and the point on it
+  bool weigh;  ///< weigh the sample by the power heuristic against scattering: the path continues and may hit the light
+  WayBits bits;  ///< for the transmittance of the shadow ray
+};
+
 /// Radiance [W/m^2/sr] of a light sample that the point scatters back along the path, with shadows and transmittance
-/// but without albedo. `u` chooses the light and the point on it. `weigh`: weigh the sample by the power heuristic
-/// against scattering, for paths that continue and may hit the light. Adds 1 to shadow_rays if a shadow ray is traced.
-Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh,
-                         const WayBits& bits, std::uint64_t& shadow_rays);
+/// but without albedo. Adds 1 to shadow_rays if a shadow ray is traced.
+Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, const LampDraw& draw,
+                         std::uint64_t& shadow_rays);
 
 }  // namespace tempolux

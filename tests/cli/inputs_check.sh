@@ -31,9 +31,9 @@ keeps c.irradcache frame-render S.glb --size 8x6 --spp 1 --irradcache c.irradcac
 keeps f.exr aqm-compare f.exr g.exr --json f.exr
 keeps g.exr aqm-compare f.exr g.exr --difference g.exr
 keeps f.exr frame-render S.glb --size 8x6 --spp 1 --mask f.exr --base g.exr -o f.exr
-mkdir plan && cp S.glb plan/plan.mk && cp S.glb plan/state.0000
+mkdir plan && cp S.glb plan/plan.mk
 keeps plan/plan.mk scene-plan plan/plan.mk -o plan
-keeps plan/state.0000 photon-trace S.glb --photons 1k -o q.photons --state plan/state.0000 --depfile plan/state.0000
+keeps S.glb photon-trace S.glb --photons 1k -o q.photons --depfile S.glb
 cp p.photons p.csv
 keeps p.csv tempolux-info p.csv --export p.csv
 keeps f.exr tempolux-info --png f.exr f.exr

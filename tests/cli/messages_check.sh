@@ -25,7 +25,7 @@ tool-probe --help 3>&1 >/dev/full; echo "exit $?"
 tool-probe scene.glb -o - 3>&1 >/dev/full; echo "exit $?"
 tool-probe scene.glb -o - 3>&1 >&-; echo "exit $?"
 tool-probe scene.glb -o b.out --second b2.out --work input-error -q; echo "exit $?"
-tool-probe /abs/sub/scene.glb -o f.##.out --frames 3-4 --bytes 0 --threads 1 --state st/a 'st/b c' --depfile d.mk -v 2>&1 | sed 's/[0-9.]* s/T s/; s/([0-9.]* CPU/(T CPU/'
+tool-probe '/abs/s b/scene.glb' -o f.##.out --frames 3-4 --bytes 0 --threads 1 --depfile d.mk -v 2>&1 | sed 's/[0-9.]* s/T s/; s/([0-9.]* CPU/(T CPU/'
 cat d.mk f.03.out f.04.out
 ls -A
 # Only names of files may be patterns: a scene, a camera or a map of light has its own name at every frame.

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const bool range = tool.common().frames.size() > 1;
-    tool.depends_on(scene, tools::InputRole::of_scene);
+    tool.depends_on(scene);
     tool.depends_on("cache.points");
     for (const int frame : tool.common().frames) {
       tools::Output file(range ? tools::frame_name(output, frame) : output);

@@ -92,13 +92,10 @@ std::vector<std::string> Tool::scene_words() const {
 }
 
 std::string Tool::State::depfile_text(const std::vector<std::string>& targets) const {
-  std::vector<std::string> inputs = common.state_files;
-  for (const Dependency& dependency : dependencies)
-    if (dependency.role != InputRole::of_scene || common.state_files.empty()) inputs.push_back(dependency.file);
   std::string rule, phony;
   for (const std::string& target : targets) rule += (rule.empty() ? "" : " ") + make_word(target);
   rule += ":";
-  for (const std::string& file : inputs) {
+  for (const std::string& file : dependencies) {
     rule += " \\\n  " + make_word(file);
     if (std::ranges::find(targets, file) == targets.end()) phony += "\n" + make_word(file) + ":\n";
   }

@@ -201,8 +201,6 @@ void Tool::common_options(unsigned flags) {
       file_option("--majorants", common.volume.majorants,
                   "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
                   "segment; needed for maps that are updated");
-    leave_out_of_history(file_option("--state", common.state_files,
-                                     "state files of scene-plan, listed by --depfile instead of the scene's files"));
     state_->of_scene.insert(leave_out_of_history(
         app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene")));
   }

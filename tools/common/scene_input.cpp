@@ -25,7 +25,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   if (const std::string doubt = doubt_of_light_units(scene_);
       needs & light && common.light_units == "raw" && !doubt.empty())
     tool.warn(doubt);
-  for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);
+  for (const std::string& file : scene_.files) tool.depends_on(file);
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
   time_.light_units = common.light_units;

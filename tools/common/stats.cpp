@@ -97,7 +97,6 @@ void Stats::count(const std::string& name, double value) {
 }
 
 void Stats::set(const std::string& name, double value) { state_->results[name] = number(value); }
-void Stats::set(const std::string& name, const std::string& value) { state_->results[name] = value; }
 
 std::string Stats::json(const std::string& tool, const std::string& command, int threads, int exit_code) const {
   Json phases = Json::array();

@@ -17,7 +17,6 @@ class Stats {
   void end_phase();
   void count(const std::string& name, double value);  ///< adds to counts.NAME: rays, photons, bytes ...
   void set(const std::string& name, double value);    ///< sets results.NAME, for example an error estimate
-  void set(const std::string& name, const std::string& value);
 
   /// The text of the file. `command` is the tool's line of history.
   std::string json(const std::string& tool, const std::string& command, int threads, int exit_code) const;

@@ -173,9 +173,8 @@ std::function<void(double)> Tool::progress_sink() {
 void Tool::depends_on(const std::string& file, InputRole role) {
   if (file == "-") return;
   if (role != InputRole::replaceable) protect_input(file);
-  const auto same = [&](const State::Dependency& known) { return known.file == file; };
-  if (std::ranges::any_of(state_->dependencies, same)) return;
-  state_->dependencies.push_back({file, role});
+  std::vector<std::string>& known = state_->dependencies;
+  if (std::ranges::find(known, file) == known.end()) known.push_back(file);
 }
 
 /// Writes a part of the manual (docs/make_tools.sh, cmake/install.cmake). True if the user asked for nothing else.
@@ -198,7 +197,6 @@ void Tool::State::apply_limits() const {
 int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   apply_limits();
   const ThreadLimit limit(common.threads);
-  for (const std::string& file : common.state_files) protect_input(file);
   // Created before the work like all outputs, so that an unwritable place is reported first.
   std::optional<Output> stats_output, dep_output;
   if (!common.stats_file.empty()) stats_output.emplace(common.stats_file, Output::Kind::text);

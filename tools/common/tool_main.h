@@ -42,7 +42,6 @@ enum ExitCode {
 /// How a run uses an input file.
 enum class InputRole {
   file,         ///< no output may replace it
-  of_scene,     ///< a file of the scene: the same, but --depfile may name state files instead
   replaceable,  ///< read completely before anything is written, so an output may replace it, as in --records c -o c
 };
 
@@ -50,10 +49,10 @@ enum class InputRole {
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale
-  uses_seed = 2,    ///< --seed --seed-mode
-  uses_camera = 4,  ///< --camera
-  uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
+  uses_scene = 1,       ///< --fps --segment --animation --light-units --environment... --volume... --allow-stale
+  uses_seed = 2,        ///< --seed --seed-mode
+  uses_camera = 4,      ///< --camera
+  uses_frames = 8,      ///< --frame N or --frames SPEC, into Common::frames
   uses_majorants = 16,  ///< --majorants; only with uses_scene
 };
 
@@ -82,9 +81,8 @@ struct Common {
   std::string environment;  ///< file or R,G,B; "": none
   double environment_strength = 1, environment_rotation_deg = 0;
   VolumeOptions volume;
-  std::string stats_file, dep_file;      ///< "": none
-  std::vector<std::string> state_files;  ///< listed in the depfile in place of the scene's files
-  std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
+  std::string stats_file, dep_file;    ///< "": none
+  std::uint64_t max_memory_bytes = 0;  ///< 0: no limit
   bool allow_stale = false, quiet = false;
   int verbose = 0;
 
@@ -158,8 +156,8 @@ class Tool {
   /// The given options that every tool needs to read this scene in the same way: time, lights, media. Names of files
   /// are absolute.
   std::vector<std::string> scene_words() const;
-  /// Adds a file that this run depends on, for --depfile (each once, in order). With --state, files of the scene are
-  /// replaced by the state files. Throws InputError if an output would replace the file, unless it is `replaceable`.
+  /// Adds a file that this run depends on, for --depfile (each once, in order). Throws InputError if an output would
+  /// replace the file, unless it is `replaceable`.
   void depends_on(const std::string& file, InputRole role = InputRole::file);
   /// All warnings of this run, also those that were not shown.
   std::vector<std::string> warnings() const;

@@ -24,11 +24,7 @@ struct Tool::State {
   std::set<const CLI::Option*> of_scene;  ///< options with which every tool must read the scene
   std::set<const CLI::Option*> files;  ///< of file_option(): values may be patterns, unlike names of scenes and cameras
 
-  struct Dependency {
-    std::string file;
-    InputRole role;
-  };
-  std::vector<Dependency> dependencies;
+  std::vector<std::string> dependencies;
 
   // Messages may come from any thread.
   std::mutex message_mutex;

@@ -129,7 +129,7 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
       throw InputError(files.back() + ": cannot be opened: there is no such file; frame " + std::to_string(frame) +
                        " is read, as its segment or a filter's window holds it; name the "
                        "frames that have files, such as --volume-frames 0-47 (make: in VOLUME_OPTIONS)");
-    tool_.depends_on(files.back(), InputRole::of_scene);
+    tool_.depends_on(files.back());
   }
   if (!series_) {
     std::vector<VdbName> names;

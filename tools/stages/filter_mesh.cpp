@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/text_header.h"
+#include "lib/core/formatted.h"
 #include "tools/common/cli.h"
 #include "tools/stages/count_photons.h"
 
@@ -60,7 +61,9 @@ int filter_mesh(int argc, char** argv) {
       ->excludes(counts);
   tool.number_option(
       "--filter-width", options.count.mesh.filter.width, 0, kNoLimit,
-      "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that 256 photons count in the mean");
+      formatted(
+          "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that %g photons count in the mean",
+          kPhotonsInKernel));
   tool.output_option(options.output, ".meshirrad file, or a pattern; - for standard output")->required();
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {

@@ -288,14 +288,14 @@ void check(const Tool& tool, RenderOptions& options) {
   if (options.light_paths > 0 && !options.base.empty())
     throw InputError("--light-paths: adds light to all pixels, also to those of --base; leave out one");
   options.light.photons_alone = options.integrator == "photons";
-  options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // the same ratio
+  options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // keeps ratio()
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
         "--halves: pixels of --base are the same in both, so that they are not independent; leave out one");
   if (!options.base.empty() && options.half_float)
     throw InputError("--half: would round the pixels of --base, which are kept bit for bit; leave out one");
-  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
+  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : options.pixel_error_of_files;
   else options.frame.pixel_error = options.pixel_error;
   const bool halves = options.frame.halves;
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");

@@ -16,7 +16,8 @@ struct RenderOptions {
   std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
   IndirectLightOptions light;
-  double pixel_error = -1;
+  double pixel_error = -1;             ///< below 0: pixel_error_of_files if files hold the light, else 0
+  double pixel_error_of_files = 0.01;  ///< relative error that a pixel may have
   bool half_float = false, keep_outliers = false;
   int width = 640, height = 360;
   double audit = 0;               ///< share of the frame's camera rays

@@ -125,7 +125,7 @@ void split_points(Tool& tool, const std::string& path, const SplitOptions& optio
   tool.stats().phase("cells");
   const double spacing = file.header.spacing;
   // Points are evenly spaced: a square of four spacings holds 4 x 4 of them.
-  const double edge = options.cell.value_or(4 * spacing);
+  const double edge = options.cell.value_or(options.spacings_per_cell * spacing);
   FluxCells cells(edge, spacing * spacing);
   add_flux(file.records, spacing * spacing, cells);
   cells.close(options.limit);

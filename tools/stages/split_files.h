@@ -11,8 +11,9 @@ namespace tempolux::tools {
 
 struct SplitOptions {
   std::string input, low, high;
-  std::optional<double> cell;   ///< edge, m; empty: automatic
-  double limit = kBrightLimit;  ///< a cell keeps at most this multiple of the mean irradiance in the low part
+  std::optional<double> cell;    ///< edge, m; empty: automatic
+  double spacings_per_cell = 4;  ///< edge of an automatic cell of points, in mean distances of points
+  double limit = kBrightLimit;   ///< a cell keeps at most this multiple of the mean irradiance in the low part
 };
 
 /// Reads the input, whose first bytes determine its type, and writes the low and the high part. Throws InputError for

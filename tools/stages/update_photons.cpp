@@ -104,7 +104,8 @@ void add_update_options(Tool& tool, UpdateArguments& arguments) {
       "path. all: every group. Priorities are multiplied by age, except for oldest and random");
   app.add_option("--pilots", arguments.pilots,
                  "for a map that will be updated by pilots: share of each group's paths that are pilots, such as 3%; "
-                 "at least one path, at most 256")
+                 "at least one path, at most " +
+                     std::to_string(formats::photons::kMostPilots))
       ->type_name("PERCENT")
       ->capture_default_str();
   // For comparison with the papers, so --help does not show it: docs/methods/volume_photons.md.

@@ -69,7 +69,8 @@ TEST(Choose, WhereHalvesAgreeThePictureStays) {
 /// b^2), here .5. The standard error of V - C from 108 pixels, 2 V / sqrt(108) = .19 V, is added: w = .6. The bias is
 /// given back: the mean of M stays, to rounding. What remains is the noise (1 - w)^2 V = .16 V. (F - M)^2 is estimated
 /// from as many pixels, so w has a random error of about .1, which adds .01 (V + b^2) = .02 V; the mean of M over about
-/// 100 pixels adds .01 V. Without the light given back the squared error would be .16 V + .36 b^2.
+/// 100 pixels adds .01 V. Without the light given back the squared error would be .16 V + .36 b^2. Seen to fail: no
+/// light given back.
 TEST(Choose, ABiasedCandidateGetsAShareAndLeavesTheMean) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
   const Halves raw{noise(2, sigma), noise(3, sigma)};
@@ -99,6 +100,7 @@ TEST(Choose, TheBetterCandidateIsTaken) {
 /// and the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the best share is (V - V / 2) / V = .5; with the standard
 /// error of V - C, .19 V / 2, w = .6. The noise (1 - w / 2)^2 V = .49 V remains. Without the covariance the share would
 /// be 1, and .25 V would remain. w has a random error of about .1, and so the squared error one of .07 V at a pixel.
+/// Seen to fail: the noise of the candidate left out.
 TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
   const Halves raw{noise(8, sigma), noise(9, sigma)};

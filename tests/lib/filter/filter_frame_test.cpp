@@ -56,7 +56,7 @@ TEST(Filter, NothingCrossesAnEdge) {
 
 /// Linear light is a plane everywhere, also where the border of the picture cuts the window (a mean over 15 pixels
 /// would have an error of .05 to .1 there). The pull on slopes reduces them by .02 / .27 at a border: .011 for the
-/// widest window.
+/// widest window. Seen to fail: a mean in place of a plane.
 TEST(Filter, ARampStaysUpToItsBorder) {
   Image frame = wall(40, 24);
   const auto ramp = [](int x, int y) { return 1 + 0.01f * float(x) - 0.02f * float(y); };
@@ -96,7 +96,8 @@ TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
 
 /// A pattern moves with its wall by (3, -2) pixels per frame, v up. If flow is followed in the right direction, five
 /// frames average the noise to 1/sqrt(5), which 2000 pixels measure to 1.6 %. With a wrong sign the values differ by
-/// twenty times the noise and are left out: the noise does not fall.
+/// twenty times the noise and are left out: the noise does not fall. Seen to fail: the flow followed against its
+/// direction.
 TEST(Filter, TheFlowIsFollowedTheRightWay) {
   const auto pattern = [](int x, int y) { return float((x * 7 + y * 13) % 5); };
   for (const float sign : {1.0f, -1.0f}) {
@@ -122,16 +123,32 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
   }
 }
 
-/// Texture is not light: a chequered wall under uniform light keeps every square.
+/// Texture is not light. On a chequered wall under a uniform light of 3 every square keeps its colour, and noise goes
+/// as on a plain wall: halves with an error of .1 leave .1 / sqrt(2) in the raw picture, and the mean over the smallest
+/// window in three frames, 27 pixels, leaves a fifth of that. The band is a third. A filter of radiance would mix light
+/// and dark squares; choose() would then keep the raw picture with its noise. Seen to fail: radiance filtered in place
+/// of light.
 TEST(Filter, AlbedoIsNotBlurred) {
+  constexpr int kSide = 32;
   const auto albedo = [](int x, int y) { return (x + y) % 2 == 0 ? 0.9f : 0.1f; };
-  Image frame = wall(32, 32);
-  grey(frame, "direct", [&](int x, int y) { return albedo(x, y) * 3; });
-  grey(frame, "albedo", albedo);
-  set_noise(frame, "direct", everywhere(0.01f));
-  const Image out = filtered({frame, frame, frame});
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 32; ++x) EXPECT_NEAR(at(out, "direct.G", x, y), albedo(x, y) * 3, 1e-3f);
+  Noise noise(0.1f);
+  std::vector<Image> frames;
+  for (int f = 0; f < 3; ++f) {
+    Image frame = wall(kSide, kSide);
+    std::vector<float> a(frame.pixel_count()), b(frame.pixel_count());
+    for (std::size_t p = 0; p < a.size(); ++p) a[p] = noise(), b[p] = noise();
+    const auto index = [](int x, int y) { return std::size_t(y * kSide + x); };
+    grey(frame, "direct", [&](int x, int y) { return albedo(x, y) * (3 + (a[index(x, y)] + b[index(x, y)]) / 2); });
+    set_noise(frame, "direct", [&](int x, int y) { return albedo(x, y) * (a[index(x, y)] - b[index(x, y)]) / 2; });
+    grey(frame, "albedo", albedo);
+    frames.push_back(frame);
+  }
+  const Image out = filtered(frames);
+  double square = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      square += std::pow(double(at(out, "direct.G", x, y) / albedo(x, y)) - 3, 2) / (kSide * kSide);
+  EXPECT_LT(std::sqrt(square), 0.1 / std::sqrt(2) / 3);
 }
 
 Image layered_frame(Noise& noise) {
@@ -220,7 +237,7 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
 }
 
 /// A dark wire covers half of each pixel in column 20 of a bright wall; its centre is seen there, or none. The samples
-/// found .3 to .7 of it. The wire keeps its contrast.
+/// found .3 to .7 of it. The wire keeps its contrast. Seen to fail: light of the known surfaces not taken off.
 TEST(Filter, AWireKeepsItsContrast) {
   for (const bool centre : {true, false}) {
     Image frame = wall(40, 64);

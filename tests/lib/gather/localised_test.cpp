@@ -163,6 +163,7 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
   EXPECT_NEAR(change.influence, 25, 4 * 25 / std::sqrt(196.0f));
 }
 
+/// Seen to fail: records compared by the mean before they are interpolated.
 TEST(Influence, BesideADarkRecordTheMeanDecides) {
   // The mean irradiance is 100, so least_ is 1. Both records have relative influences below the threshold of .06:
   // .0594 / 1 and .1188 / 2. Halfway between them the means are .0891 and 1, and their quotient is above the

@@ -118,7 +118,8 @@ TEST(PointLookup, EveryDirectionFindsAPointThatFacesIt) {
 }
 
 /// A wall at x = 0.5 stands between a bright and a dark room on one floor, and a box stands on a patch of the floor.
-/// Hits close to the wall read points of their own side or none, and most read one.
+/// Hits close to the wall read points of their own side or none, and most read one. Seen to fail: points read by their
+/// side alone, without a look for walls.
 TEST(PointLookup, NoHitReadsThroughAWall) {
   std::vector<IrradiancePoint> points = square(2000);
   const auto room = [](Vec3 p) { return p.x < 0.5f ? 0.0f : p.x > 0.8f && p.z > 0.8f ? 2.0f : 1.0f; };

@@ -109,6 +109,7 @@ TEST(RecordStore, NoCellIsForgotten) {
   }
 }
 
+/// Seen to fail: only the last record listed in the larger table.
 TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
   RecordStore store;
   for (int i = 0; i < 100; ++i)
@@ -119,7 +120,8 @@ TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
       ASSERT_EQ(store.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
 }
 
-/// E(x) = a + b . x on a plane: records with exact gradients reproduce it for any weights.
+/// E(x) = a + b . x on a plane: records with exact gradients reproduce it for any weights. Seen to fail: the sign of
+/// the translational gradient.
 TEST(RecordStore, LinearFieldIsExact) {
   const Vec3 slope{0.3f, 0, -0.2f};
   RecordStore store;
@@ -142,6 +144,7 @@ TEST(RecordStore, LinearFieldIsExact) {
 }
 
 /// E(n) = 1 + 0.5 n_x, rotational gradient (n_i x n) . g with n_i = z: n_i x n = (-n_y, n_x, 0), so g = (0, 0.5, 0).
+/// Seen to fail: the sign of the rotational gradient.
 TEST(RecordStore, TurnsWithTheNormal) {
   RecordStore store;
   IrradianceRecord r = record_at({}, {0, 0, 1}, 1, Rgb(1.0f));
@@ -185,6 +188,7 @@ TEST(RecordStore, CountsWithinItsAngle) {
   EXPECT_EQ(count_at(0.91f), 1);
 }
 
+/// Seen to fail: no limit of the height above a record's plane.
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
   RecordStore store;
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));

@@ -37,13 +37,17 @@ Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double
   return mean;
 }
 
-// Heights and sizes from a lamp far above to a lamp that fills half the sky. The tolerance is 4 sigma plus the single
-// precision of the positions.
+// Heights and sizes from a lamp far above to a lamp that fills half the sky, and a far lamp that is seen aslant. The
+// tolerance is 4 sigma plus the single precision of the positions. Seen to fail: the cosine at the lamp left out of the
+// density by area.
 TEST(AreaLight, GivesLambertsIrradianceAtAnyDistance) {
-  for (const auto& [height, half] :
-       {std::pair{100.0f, 0.5f}, {5.0f, 0.5f}, {1.0f, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f}, {2.0f, 30.0f}}) {
+  struct Lamp {
+    float height, half, aside = 0.1f;
+  };
+  for (const auto& [height, half, aside] :
+       {Lamp{100, 0.5f}, {5, 0.5f}, {1, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f}, {2, 30}, {100, 0.5f, 80}}) {
     LightScene scene;
-    const auto corners = square_facing_down({0.1f, 0.2f, height}, half);
+    const auto corners = square_facing_down({aside, 0.2f, height}, half);
     scene.add(corners, Rgb(1, 2, 3));
     const Lights lights = scene.lights();
     double sigma = 0;
@@ -270,7 +274,8 @@ LightScene crowd(int count, bool suns) {
 }
 
 // sample() returns the pdf that pdf_solid_angle() has for the returned place: the same decisions from the same
-// numbers. The tolerance of 1e-4 is for the rounding of the position.
+// numbers. The tolerance of 1e-4 is for the rounding of the position. Seen to fail: the choice between distant and
+// other lights left out.
 TEST(Lights, PdfIsThatOfTheSample) {
   const LightScene scene = crowd(200, true);
   const Lights lights = scene.lights();
@@ -327,6 +332,7 @@ TEST(Lights, ManyTogetherGiveTheSumOfEach) {
 // The choice probabilities of all lights sum to 1, minus the probability of walks that end at lights which do not
 // reach the point; if all lights are two-sided and the point has no normal, every light reaches the point. Each is the
 // frequency with which choose() takes the light: u in equal steps of 2^-16 hits each light within 1 step per level.
+// Seen to fail: the choices at the upper nodes left out.
 TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   std::vector<LightBounds> bounds;
   const PathRandom random(4, 4);

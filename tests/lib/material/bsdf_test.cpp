@@ -107,7 +107,8 @@ TEST(Mirror, ReflectsTheWholeDirectionAndOnlyThat) {
 
 // The Lambert lobe reflects rho (1 - A), to the 1e-4 of the table. For the other lobes the mean of the sample weights
 // must equal the integral of f by quadrature. Lobe and direction are independent sequences of 2^16 points, at worst
-// as noisy as random numbers: sigma is 0.5 / 256 for weights up to 1, and the band 2 sigma.
+// as noisy as random numbers: sigma is 0.5 / 256 for weights up to 1, and the band 2 sigma. Seen to fail: event D not
+// divided by its probability.
 TEST(Bsdf, SamplesWeighWhatTheFormulasIntegrateTo) {
   for (const Material& m :
        {dielectric({0.8f, 0.5f, 0.2f}, 0.6f), metal({0.9f, 0.6f, 0.2f}, 0.8f), dielectric(Rgb(1.0f), 1.0f)}) {
@@ -142,7 +143,7 @@ TEST(Bsdf, CouplingAveragesToWhatItsNormalisationSays) {
 // In uniform light 1 at most 1 is reflected, for rho = 1, any F0 and all angles. For the S lobes the test uses the
 // albedo from the table, corrected by the table's error against the integrals (other tests show that sample() and
 // eval agree); for the Lambert lobe the table itself. With the term of Kulla and Conty a rough white metal reflects
-// exactly all light.
+// exactly all light. Seen to fail: the Lambert lobe in full under a coat.
 TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
   const integrals::GaussLegendre rule(96);
   for (float roughness : {0.021f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f}) {
@@ -168,6 +169,7 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
   }
 }
 
+/// Seen to fail: the coupling of the coat applied to one direction only.
 TEST(Bsdf, IsReciprocal) {
   const PathRandom random(1, 0);
   for (const Material& m :
@@ -234,6 +236,7 @@ void check_distribution(const Material& m, float cos_o) {
   EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1))) << m.roughness << ' ' << cos_o << ' ' << cells;
 }
 
+/// Seen to fail: the pdf of single reflection alone.
 TEST(Bsdf, SamplesFallWhereThePdfSays) {
   for (float cos_o : {0.95f, 0.5f, 0.1f}) {
     check_distribution(dielectric(Rgb(0.5f), 0.4f), cos_o);

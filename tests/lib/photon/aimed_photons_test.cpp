@@ -92,6 +92,7 @@ Inside inside(const Hut& hut, const EmissionTable& table, std::uint64_t count) {
 }
 
 // Batches of one group are parts of one sequence and not quite independent; stratification only makes their sum better.
+// Seen to fail: the other strategy's density left out of the weight (36 %).
 TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   const Hut hut;
   EmissionTable aimed = hut.table;

@@ -39,6 +39,7 @@ Sums trace_all(const PhotonTracer& tracer) {
 
 class ClosedBoxPhotons : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
+/// Seen to fail: flux not divided by the probability of survival (33 %).
 TEST_P(ClosedBoxPhotons, TotalFluxIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   test::ClosedBox box(shape, rho);

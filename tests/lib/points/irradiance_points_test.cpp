@@ -92,7 +92,7 @@ class ClosedBoxPoints : public testing::TestWithParam<std::tuple<Shape, float>> 
 /// The mean of direct + indirect light over the inside is F / (S (1 - rho)). Four seeds of 20k paths leave about n =
 /// 20k rho/(1-rho) photons: sigma of the indirect part is 1/sqrt(4 * 20k) sqrt((1+rho)/(rho)) < 1 %; for long paths
 /// (rho = 0.99: 100 bounces, lengths vary by 100 %) 0.4 %. Direct light from 4 samples at 4 x 6000 points is exact to
-/// 0.2 %.
+/// 0.2 %. Seen to fail: the photon on the disc's border counted (1.1 %).
 TEST_P(ClosedBoxPoints, MeanIrradianceIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   test::ClosedBox box(shape, rho);
@@ -139,6 +139,7 @@ TEST(PointNoise, OfTheMeanOverAllPointsIsThatOfThePaths) {
 /// and that of a wall to 0.9 %. Repeated with every other triangle's front turned outwards.
 class RoomPoints : public testing::TestWithParam<bool> {};
 
+/// Seen to fail: the area of the whole disc at edges and corners (6 %).
 TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
   HandMadeScene room, scene;
   room.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
@@ -173,6 +174,7 @@ INSTANTIATE_TEST_SUITE_P(Windings, RoomPoints, testing::Bool());
 /// all. The bright side loses none, neither on the wall nor on the floor next to it.
 class ThinWall : public testing::TestWithParam<float> {};
 
+/// Seen to fail: photons counted from beyond the wall.
 TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
   const float thickness = GetParam();
   HandMadeScene scene;
@@ -397,7 +399,7 @@ TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
 }
 
 /// Direct light of 1 W/sr at a coated floor at distance d and cosine c: c / d^2 arrival_weight(c), as photons are
-/// stored; without a coat c / d^2.
+/// stored; without a coat c / d^2. Seen to fail: the coat left out (28 %).
 TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
   Material coated = matte(Rgb(0.5f));
   coated.specular = 1;
@@ -425,7 +427,7 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
 /// Direct light is weighted by the shading normal, as photons and camera paths do. The floor's normals lean 30 degrees
 /// to the right, and lamps of 1 W/sr are 100 m away (1/10^4 W/m^2 at normal incidence). A lamp at the zenith gives cos
 /// 30, one at 30 degrees on the right 1, and one at 65 degrees on the left, behind the normal, 0. Directions change by
-/// 0.02 over the floor.
+/// 0.02 over the floor. Seen to fail: the geometric normal in the cosine (15 %).
 TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
   const auto direction = [](float degrees) {
     return Vec3{std::sin(degrees * kPi / 180), std::cos(degrees * kPi / 180), 0};

@@ -76,6 +76,7 @@ TEST(UpdatePoints, StaticPointsComeFirstAndStayWhereTheyAre) {
   }
 }
 
+/// Seen to fail: random numbers by a point's place in the order of work.
 TEST(UpdatePoints, DirectLightIsThatOfFreshPointsToTheBit) {
   const Room room({1.5f, 0, 1.5f});
   std::vector<IrradiancePoint> points = room.standing_points();
@@ -121,23 +122,29 @@ TEST(UpdatePoints, WithoutDynamicPhotonsAndMoversNothingChanges) {
   }
 }
 
+/// Where nothing is left of the static light, and where a box takes half of the lamp's light away: the sum of all
+/// points' indirect light is that of fresh points. Cut parts would add up to 1.6 times as much in the second case. Seen
+/// to fail: the change alone cut at 0.
 TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
-  // Static light of 1 everywhere and dynamic photons that remove all of it: noise around 0, never negative.
-  const Room room({1.5f, 0, 1.5f}, true);
-  std::vector<IrradiancePoint> points = room.standing_points();
-  // The lamp moves, so no static light remains.
-  for (const IrradiancePoint& point : points) ASSERT_EQ(point.indirect, Rgb(0.0f));
-  room.update(points);
-  const auto fresh = room.fresh_points();
-  double sum = 0, fresh_sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    ASSERT_GE(min_component(points[i].indirect), 0);
-    ASSERT_EQ(points[i].direct, fresh[i].direct);
-    sum += double(points[i].indirect.g), fresh_sum += double(fresh[i].indirect.g);
-  }
   // Updated points all have one radius, and points estimated anew have their own. So updated points are more blurred,
   // but at the edges of walls the area of both is clipped in the same way.
-  EXPECT_NEAR(sum / fresh_sum, 1, 0.02);
+  for (const bool lamp_moves : {true, false}) {
+    const Room room(lamp_moves ? Vec3{1.5f, 0, 1.5f} : Vec3{1.4f, 2.33f, 1.7f}, lamp_moves);
+    std::vector<IrradiancePoint> points = room.standing_points();
+    double standing = 0, sum = 0, fresh_sum = 0;
+    for (const IrradiancePoint& point : points) standing += double(point.indirect.g);
+    room.update(points);
+    const auto fresh = room.fresh_points();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_GE(min_component(points[i].indirect), 0);
+      ASSERT_EQ(points[i].direct, fresh[i].direct);
+      sum += double(points[i].indirect.g), fresh_sum += double(fresh[i].indirect.g);
+    }
+    if (lamp_moves) {
+      EXPECT_EQ(standing, 0);
+    } else EXPECT_GT(standing / fresh_sum, 1.5);
+    EXPECT_NEAR(sum / fresh_sum, 1, lamp_moves ? 0.02 : 0.05) << lamp_moves;
+  }
 }
 
 /// Directions stay with their photons: of two static photons the dynamic map removes the first and adds a third.
