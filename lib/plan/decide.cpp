@@ -2,6 +2,7 @@
 #include "lib/plan/decide.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -28,6 +29,8 @@ constexpr std::size_t kMostViews = 16;
 /// Fewest states of light for which computing the light of the static scene first pays: it is computed once and every
 /// state follows from it.
 constexpr std::size_t kFewestStates = 3;
+/// A segment departs from the shot's way to light if that way needs this many times the work of the segment's best.
+constexpr double kDeparture = 1.3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
@@ -150,16 +153,22 @@ std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool 
 /// Measures each frame until its own best way has been measured. If the best way of the whole segment is not measured
 /// at some of the frames, measures these frames again until it is. Sets `middle` to the pilot of the frame in the
 /// middle.
-std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool media,
-                          const std::function<std::unique_ptr<FramePilot>(int)>& pilot_of,
-                          std::unique_ptr<FramePilot>& middle) {
+struct Looking {
+  const std::vector<int>& frames;
+  const Wish& wish;
+  bool media;
+  std::function<std::unique_ptr<FramePilot>(int)> pilot_of;
+  std::optional<IndirectMethod> also;  ///< a method that must be measured, too
+};
+std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle) {
+  const auto& [frames, wish, media, pilot_of, also] = looking;
   const int places = (kPilotPlaces + int(frames.size()) - 1) / int(frames.size());
   std::vector<Look> looks;
   for (const int frame : frames) {
     std::unique_ptr<FramePilot> pilot = pilot_of(frame);
     looks.push_back(pilot->look(places, [&](const Look& look) {
-      const std::optional<Way> best = best_of(look.ways, wish, media);
-      return !best || best->measured;
+      const std::optional<Way> best = best_of(look.ways, looking.wish, looking.media);
+      return (!best || best->measured) && (!looking.also || look.knows(*looking.also));
     }));
     if (looks.size() == (frames.size() + 1) / 2) middle = std::move(pilot);
   }
@@ -172,9 +181,43 @@ std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool
   return looks;
 }
 
+/// The power of 2^(1 / steps) that is nearest by ratio.
+double on_grid(double x, double steps) { return x > 0 ? std::exp2(std::round(std::log2(x) * steps) / steps) : x; }
+
+/// The way `wanted` among the ways of a frame; null if it is not there.
+const Way* find_way(const std::vector<Way>& ways, const Decisions& wanted) {
+  const auto found = std::ranges::find_if(
+      ways, [&](const Way& way) { return way.method == wanted.indirect && way.map == wanted.caustic_map; });
+  return found == ways.end() ? nullptr : &*found;
+}
+
+/// Does the segment have to depart from the shot's way to light? (decide.h)
+bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const Decisions& shot) {
+  const std::vector<Way> ways = joined_ways(looks);
+  const std::optional<Way> best = best_of(ways, wish, media);
+  const Way* const same = find_way(ways, shot);
+  if (!best) return false;
+  if (!same || !is_allowed(*same, wish, media)) return true;
+  if (same->never > best->never || same->uncertain > best->uncertain) return true;
+  double sum = 0, squares = 0;
+  for (const Look& look : looks) {
+    const Way* const here = find_way(look.ways, shot);
+    const auto other = std::ranges::find_if(
+        look.ways, [&](const Way& way) { return way.method == best->method && way.map == best->map; });
+    const double ratio = std::log(std::max(here->score(), 1e-300) / std::max(other->score(), 1e-300));
+    sum += ratio;
+    squares += ratio * ratio;
+  }
+  const double n = double(looks.size()), mean = sum / n,
+               error = n > 1 ? std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1)) : 0;
+  return same->score() > best->score() * kDeparture * std::exp(2 * error);
+}
+
 /// Sets the decisions about indirect light so that they suit every measured frame.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
+  d.photon_paths = 0;
   for (const Look& look : looks) d.photon_paths = std::max(d.photon_paths, look.paths);
+  if (wish.photons == 0) d.photon_paths = std::uint64_t(on_grid(double(d.photon_paths), 1));
   const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
@@ -186,8 +229,8 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
                         1, 0, 0});
   d.indirect = way.method;
   d.caustic_map = way.map;
-  d.record_rays = way.rays;
-  d.pixel_error = wish.pixel_error * way.pixel_error;
+  d.record_rays = int(on_grid(way.rays, 1));
+  d.pixel_error = wish.pixel_error * on_grid(way.pixel_error, 4);
   if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
   d.reasons.push_back({"irradcache-build records", words});
 }
@@ -252,9 +295,13 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   d.reasons.push_back({"ibr-warp", because});
 }
 
+Reason density_reason(const PlannedSegment& segment) {
+  return {"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"};
+}
+
 /// For light textures: the number of light paths that stores the wanted photons, and the width of the filter.
-void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, StaticTree& tree,
-                    Decisions& d) {
+void decide_preview(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish,
+                    const SceneSource& source, StaticTree& tree, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
   double kernel = 0;
@@ -266,9 +313,8 @@ void decide_preview(const PlannedSegment& segment, const Wish& wish, const Scene
   const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
-  d.view = view_of(segment, wish.width, wish.height, source, tree);
-  d.reasons.push_back(
-      {"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
+  d.view = view_of(view_frames, wish.width, wish.height, source, tree);
+  d.reasons.push_back(density_reason(segment));
 }
 
 }  // namespace
@@ -291,45 +337,134 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
   return frames;
 }
 
-std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree) {
+std::vector<int> frames_of(std::span<const PlannedSegment> pieces) {
+  std::vector<int> frames;
+  for (int f = pieces.front().first; f <= pieces.back().last; ++f) frames.push_back(f);
+  return frames;
+}
+
+std::string view_of(const std::vector<int>& frames, int width, int height, const SceneSource& source,
+                    StaticTree& tree) {
   SeenAround seen;
   double radius = 0;
-  for (const int picture : spread(segment.pictures())) {
-    const SceneFrame frame = source.at(picture, false);
+  std::set<std::string> cameras;
+  for (const int number : spread(frames)) {
+    const SceneFrame frame = source.at(number, false);
+    const PlacedCamera camera = frame.camera(source.camera_node);
+    if (!cameras.insert(camera_hash(camera)).second) continue;
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, tree);
-    look_around(tracer, frame.camera(source.camera_node), width, height, seen);
+    look_around(tracer, camera, width, height, seen);
     // Only photons of distant light are aimed. Without distant light the aim serves the points alone, and the first
     // picture decides whether the scene is large enough for an aim.
-    if (picture == segment.first && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty())
+    if (number == frames.front() && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty())
       return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);
 }
 
-Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source) {
+namespace {
+
+/// Decisions that need no pilot.
+Decisions begin(const PlannedSegment& segment, bool media) {
   Decisions d;
-  StaticTree tree;
-  d.pixel_error = wish.pixel_error;
-  d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
   d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
                                                                  : "nothing reflects by a Lambert lobe"});
-  if (d.photons() && wish.method == FrameMethod::preview) {
-    decide_preview(segment, wish, source, tree, d);
-  } else if (d.photons()) {
-    if (wish.indirect == "paths" && media)
-      throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
-    d.photon_paths = 0;
-    std::unique_ptr<FramePilot> middle;
-    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
-    join(look_at(d.looked, wish, media, pilot_of, middle), wish, media, d);
+  return d;
+}
+
+/// Decides about the light of frames `d.looked`. `segment`: its pictures and movers count. `view_frames`: for
+/// view_of().
+void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
+                  const SceneSource& source, Decisions& d) {
+  StaticTree tree;
+  if (wish.method == FrameMethod::preview) return decide_preview(segment, view_frames, wish, source, tree, d);
+  std::unique_ptr<FramePilot> middle;
+  const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
+  join(look_at({d.looked, wish, media, pilot_of, {}}, middle), wish, media, d);
+  if (d.records()) d.new_share = middle->new_share(segment);
+  d.together = pictures_together(segment.pictures().size(), d);
+  decide_moving(segment, wish, media, source, tree, d);
+  decide_split(*middle, wish, d);
+  if (d.photons()) d.view = view_of(view_frames, wish.width, wish.height, source, tree);
+}
+
+/// Takes the shot's decisions about light where they suit the segment.
+void take_from_shot(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
+                    const Decisions& shot, Decisions& d) {
+  StaticTree tree;
+  std::unique_ptr<FramePilot> middle;
+  const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
+  const std::vector<Look> looks = look_at({d.looked, wish, media, pilot_of, shot.indirect}, middle);
+  if (departs(looks, wish, media, shot)) {
+    join(looks, wish, media, d);
+    d.reasons.back().because += "; the shot's way costs more here by more than pilots err";
     if (d.records()) d.new_share = middle->new_share(segment);
     d.together = pictures_together(segment.pictures().size(), d);
     decide_moving(segment, wish, media, source, tree, d);
     decide_split(*middle, wish, d);
-    if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source, tree);
+  } else {
+    d.indirect = shot.indirect;
+    d.caustic_map = shot.caustic_map;
+    d.record_rays = shot.record_rays;
+    d.pixel_error = shot.pixel_error;
+    d.photon_paths = shot.photon_paths;
+    if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
+    d.reasons.push_back({"irradcache-build records", "as in the whole shot; here " + because(joined_ways(looks))});
+    if (d.records()) d.new_share = middle->new_share(segment);
+    d.together = pictures_together(segment.pictures().size(), d);
+    if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
+    if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
+    for (const char* stage : {"photon-trace --map dynamic", "photonmap-split"}) {
+      const auto reason = std::ranges::find(shot.reasons, stage, &Reason::stage);
+      if (reason != shot.reasons.end()) d.reasons.push_back({stage, "as in the whole shot; there " + reason->because});
+    }
+  }
+  if (d.photons()) d.view = shot.view;
+}
+
+/// Throws InputError for a wish that the scene cannot fulfil.
+void refuse_paths(const Wish& wish, bool media) {
+  if (wish.indirect == "paths" && media)
+    throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
+}
+
+}  // namespace
+
+Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wish, bool media,
+                      const SceneSource& source) {
+  if (pieces.size() == 1) return decide(pieces.front(), wish, media, source);
+  // The piece with the most states of light decides about movers.
+  const PlannedSegment& moving =
+      *std::ranges::max_element(pieces, {}, [](const PlannedSegment& piece) { return piece.states().size(); });
+  Decisions d = begin(moving, media);
+  d.pixel_error = wish.pixel_error;
+  const PlannedSegment& middle = pieces[pieces.size() / 2];
+  d.looked = {pieces.front().first, middle.first + (middle.last - middle.first) / 2, pieces.back().last};
+  refuse_paths(wish, media);
+  if (d.photons()) decide_light(moving, frames_of(pieces), wish, media, source, d);
+  return d;
+}
+
+Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
+                 const Decisions* shot) {
+  Decisions d = begin(segment, media);
+  d.pixel_error = wish.pixel_error;
+  d.looked = looked_frames(segment);
+  refuse_paths(wish, media);
+  if (!d.photons()) {
+  } else if (!shot) {
+    decide_light(segment, frames_of({&segment, 1}), wish, media, source, d);
+  } else if (wish.method == FrameMethod::preview) {
+    d.indirect = shot->indirect;
+    d.photon_paths = shot->photon_paths;
+    d.texture_width = shot->texture_width;
+    d.view = shot->view;
+    d.reasons.push_back(density_reason(segment));
+  } else {
+    take_from_shot(segment, wish, media, source, *shot, d);
   }
   decide_walk(segment, d);
   return d;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,16 +28,31 @@ struct SceneSource {
 /// Ascending.
 std::vector<int> looked_frames(const PlannedSegment& segment);
 
+/// Makes the decisions of a shot, from which its segments depart only for a reason (decide). `pieces`: Plan::shot. With
+/// one piece these are the decisions of that segment. With more, pilots run for the first frame of the first piece, the
+/// middle frame of the middle one and the last frame of the last one. Numbers lie on a grid of powers of two (samples:
+/// of the fourth root of two), so that a small edit changes none of them.
+Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wish, bool media,
+                      const SceneSource& source);
+
 /// Makes the decisions of one segment. Each looked frame has its own pilot. The number of light paths is the largest
 /// that a looked frame needs. The way to light is the best one for all looked frames together (joined() in
-/// choose_light.h). Throws InputError for a wish that the scene cannot fulfil.
-Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source);
+/// choose_light.h).
+///
+/// `shot`: decisions of the shot; null: the segment decides alone. The segment takes the shot's way to light, its
+/// numbers, its split and its method for movers. It departs from the way only if that way is worse here than the best
+/// by more than a factor of kDeparture and twice the error of this factor, which follows from its spread over the
+/// looked frames. Throws InputError for a wish that the scene cannot fulfil.
+Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
+                 const Decisions* shot = nullptr);
 
-/// The spheres around what the camera sees in up to 16 pictures of a segment, evenly spaced, as the content of a view
-/// file (formats/plan/view.h). "" if the scene is not much larger than what the camera sees: photons then need no aim,
-/// and points lie everywhere. Only the ratio of `width` and `height` counts. `tree`: the static scene's tree, which is
+/// The spheres around what the camera sees in up to 16 frames, evenly spaced, as the content of a view file
+/// (formats/plan/view.h). "" if the scene is not much larger than what the camera sees: photons then need no aim, and
+/// points lie everywhere. Only the ratio of `width` and `height` counts. `tree`: the static scene's tree, which is
 /// built if it is empty.
-std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree);
+std::string view_of(const std::vector<int>& frames, int width, int height, const SceneSource& source, StaticTree& tree);
+/// Frames from the first one of the first piece to the last one of the last piece, for view_of().
+std::vector<int> frames_of(std::span<const PlannedSegment> pieces);
 
 /// Hash of everything that decide() depends on: equal keys mean equal decisions, which a file can keep.
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media);

@@ -161,6 +161,24 @@ int last_change(const Scene& scene, const TimeOptions& options) {
                   1'000'000'000);
 }
 
+/// The segments at the first frame, the middle and the last frame of the animation, each once.
+std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan, int camera_node,
+                                           const MediaHash& media) {
+  std::vector<PlannedSegment> pieces;
+  const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), plan.time);
+  const bool endless = last == std::numeric_limits<int>::max();
+  if (endless && media) return pieces;
+  for (const int frame : {0, endless ? 0 : last / 2, endless ? 0 : last}) {
+    if (!pieces.empty() && frame <= pieces.back().last) continue;
+    const auto known = std::ranges::find_if(
+        plan.segments, [&](const PlannedSegment& s) { return s.first <= frame && frame <= s.last; });
+    pieces.push_back(known != plan.segments.end()
+                         ? *known
+                         : plan_segment(scene, segment_of(scene, frame, plan.time), camera_node, plan.time, media));
+  }
+  return pieces;
+}
+
 }  // namespace
 
 const PlannedFrame& PlannedSegment::at(int frame) const { return frames.at(std::size_t(frame - first)); }
@@ -211,6 +229,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
+  plan.shot = pieces_of_shot(scene, plan, camera_node, media);
   if (!outside.empty())
     plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") +
                             " outside the animation (" + extent_in_words(scene, options) +

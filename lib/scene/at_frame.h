@@ -52,7 +52,8 @@ struct TimeOptions {
 /// key (rounded up). Without animation only negative frames are clamped.
 int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options);
 
-/// The segment that holds `frame`: frames k length to (k+1) length - 1, cut at the animation's last frame. Throws
+/// The segment that holds `frame`: frames k length to (k+1) length - 1, cut at the animation's last frame. A last
+/// segment of less than half the length belongs to the segment before. Throws
 /// std::invalid_argument unless fps and segment length are above 0; InputError if geometry overflows double.
 Segment segment_of(const Scene& scene, int frame, const TimeOptions& options);
 

@@ -36,6 +36,14 @@ void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segm
   segment.first = floor_to_multiple(frame, options.segment_length);
   segment.last = segment.first + options.segment_length - 1;
   const int last = last_frame(scene, options);
+  // A last piece of less than half a segment joins the segment before.
+  const int tail = floor_to_multiple(last, options.segment_length);
+  if (tail > 0 && 2 * (last - tail + 1) < options.segment_length && frame <= last &&
+      frame >= tail - options.segment_length) {
+    segment.first = tail - options.segment_length;
+    segment.last = last;
+    return;
+  }
   if (last == 0 || segment.first > last || segment.last <= last) return;
   (frame <= last ? segment.last : segment.first) = frame <= last ? last : last + 1;
 }

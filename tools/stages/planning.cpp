@@ -171,18 +171,24 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); },
                            [&](int frame) { return input_.emission(frame); }, camera};
   tool.stats().phase("pilots", true);
+  const auto decided = [&](const PlannedSegment& segment, const std::string& key, const auto& make) {
+    return folder ? folder->decisions(segment, hash_hex(key + tool_hash_("scene-plan")), make) : make();
+  };
+  std::string shot_key = "shot";
+  for (const PlannedSegment& piece : plan.shot) shot_key += decision_key(piece, wish, plan.media);
+  std::optional<Decisions> shot;
+  if (plan.shot.size() > 1)
+    shot = decided(plan.shot.front(), shot_key, [&] { return decide_shot(plan.shot, wish, plan.media, source); });
   for (PlannedSegment& segment : plan.segments) {
     tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
     Wish own = wish;
     const auto measured = wish.measured.find(segment.first);
-    if (measured != wish.measured.end()) own.photons = measured->second.photons;
-    const auto make = [&] { return decide(segment, own, plan.media, source); };
-    segment.decisions =
-        folder ? folder->decisions(segment, hash_hex(decision_key(segment, own, plan.media) + tool_hash_("scene-plan")),
-                                   make)
-               : make();
-    if (measured != wish.measured.end())
-      segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
+    const bool is_measured = measured != wish.measured.end();
+    if (is_measured) own.photons = measured->second.photons;
+    segment.decisions = decided(segment, decision_key(segment, own, plan.media) + (shot ? shot_key : ""), [&] {
+      return decide(segment, own, plan.media, source, shot && !is_measured ? &*shot : nullptr);
+    });
+    if (is_measured) segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
   }
   tool.stats().phase("graph");
   planned_.graph = graph(plan, wish);
