@@ -40,6 +40,7 @@ struct Segment {
   Vec3d origin{};
   Box3d world_bounds;  ///< of all geometry over the whole segment, world space, m
 
+  bool hides_at_times = false;  ///< true if a node is hidden at some frames, but not at all
   bool hides(std::uint32_t node) const { return node < node_hidden.size() && node_hidden[node] != 0; }
   /// True if the node's state differs between two frames. False in a scene made by hand, which has no nodes.
   bool moves(std::uint32_t node) const { return node < node_moves.size() && node_moves[node] != 0; }

@@ -126,7 +126,7 @@ const Rules kNode{{"name", Type::string},      {"children", Type::indices}, {"me
                   {"camera", Type::index},     {"skin", Type::index},       {"matrix", Type::numbers},
                   {"rotation", Type::numbers}, {"scale", Type::numbers},    {"translation", Type::numbers},
                   {"weights", Type::numbers}};
-const Rules kTarget{};
+const Rules kTarget{};  // all its properties are indices
 const Rules kPrimitive{{"attributes", Type::index_map, kRequired},
                        {"indices", Type::index, kDecisive},
                        {"material", Type::index},
@@ -276,6 +276,8 @@ class Checker {
     if (rule.type == Type::index_map) indices(value, place);
     if (!kTypes[std::size_t(rule.type)].fits(value)) throw Fault{place, std::string("must be ") + words(rule)};
     if (!rule.inside) return;
+    if (rule.inside == &kTarget)
+      for (std::size_t i = 0; i < value.size(); ++i) indices(value[i], place + "[" + std::to_string(i) + "]");
     if (rule.type == Type::object) object(value, *rule.inside, place);
     else elements(value, rule, place);
   }

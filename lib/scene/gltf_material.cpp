@@ -40,6 +40,12 @@ Rgb limited_colour(Import& import, const std::vector<double>& values, Rgb fallba
   return colour;
 }
 
+/// Notes a colour above 1, which glTF does not have; it is used as it is, since older exporters write bright light so.
+void note_bright(Import& import, const std::vector<double>& values, const std::string& place) {
+  if (std::ranges::any_of(values, [](double v) { return v > 1; }))
+    import.mend(place, "a colour above 1, which glTF does not allow, is taken as it is", 1);
+}
+
 void ignore_texture(const ExtensionReader& reader, const char* key) {
   if (reader.object.Has(key))
     reader.import.ignore(std::string(key) + " (the material keeps its factor)", 1,
@@ -97,6 +103,7 @@ std::vector<double> numbers_of(Import& import, const tinygltf::Material& source,
 void check_numbers(Import& import, const MaterialProperty& property, const std::vector<double>& numbers,
                    const std::string& place) {
   const std::string at = place + PropertyPlace(property.pointer).dotted();
+  if (property.role == PropertyRole::emission_colour) note_bright(import, numbers, at);
   for (const double number : numbers)
     if (!(property.role == PropertyRole::value_or_zero && number == 0))
       limited(import, number, property.lower, property.upper, at);
@@ -180,6 +187,7 @@ PunctualLight read_light(Import& import, std::size_t index) {
   else if (source.type == "spot") light.kind = PunctualLight::Kind::spot;
   else if (source.type == "directional") light.kind = PunctualLight::Kind::directional;
   else import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
+  note_bright(import, source.color, place + ".color");
   light.intensity = limited_colour(import, source.color, Rgb{1.0f}, kNoUpper, place + ".color");
   light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");

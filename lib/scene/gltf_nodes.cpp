@@ -158,8 +158,9 @@ void import_nodes(Import& import) {
     const Pending next = stack.back();
     stack.pop_back();
     if (next.source < 0 || std::size_t(next.source) >= count) {
-      import.mend("nodes", "node " + std::to_string(next.source) + " is named as a child or root but does not exist",
-                  1);
+      const Node* const parent = next.parent < 0 ? nullptr : &import.scene.nodes[std::size_t(next.parent)];
+      import.mend(parent ? place_of("nodes", parent->source_index, parent->name) + ".children" : "scenes.nodes",
+                  "node " + std::to_string(next.source) + " does not exist; it is left out", 1);
       continue;
     }
     const std::size_t source = std::size_t(next.source);

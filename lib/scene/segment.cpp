@@ -98,7 +98,7 @@ void set_hidden(const Scene& scene, const Animator& animator, double fps, Segmen
     const std::vector<std::uint8_t> seen = animator.seen(f / fps);
     for (std::size_t n = 0; n < first.size(); ++n) {
       if (seen[n]) segment.node_hidden[n] = 0;
-      if (seen[n] != first[n]) segment.node_moves[n] = 1;
+      if (seen[n] != first[n]) segment.node_moves[n] = 1, segment.hides_at_times = true;
     }
   }
   for (std::size_t n = 0; n < first.size(); ++n)

@@ -1,4 +1,5 @@
 // tests/lib/scene/node_visibility_test.cpp -- KHR_node_visibility: hidden nodes, and nodes that appear or vanish.
+#include "lib/light/lights.h"
 #include "lib/scene/static_scene.h"
 #include "tests/lib/scene/gltf_maker.h"
 #include "tests/support/scene_at_frame.h"
@@ -149,6 +150,24 @@ TEST(NodeVisibility, ANodeThatASegmentHidesIsAbsentThere) {
   EXPECT_EQ(a.hashes.moving_geometry, b.hashes.moving_geometry);
   EXPECT_EQ(frame_of(scene, 30).surfaces.size(), 2u);
   EXPECT_EQ(frame_of(scene, 30).lights.size(), 1u);
+}
+
+// Seen to fail: the table was made from the first frame alone, so that no photon left a lamp that appears later.
+TEST(NodeVisibility, ALampThatAppearsIsSampled) {
+  Family family(visible(false));
+  family.animate(family.parent, {0, 6}, {0, 1});
+  const Scene scene = family.maker.load();
+  const EmissionTable table = build_emission_table(scene, segment_of(scene, 0, {}), {});
+  EXPECT_EQ(table.probability, std::vector<double>{1});
+  EXPECT_GT(frame_of(scene, 6).lights[0].light.intensity.r, 0);
+  // And a table of uniform probabilities is no answer: beside a dark lamp all samples go to the bright one.
+  Family two;
+  two.maker.add_light({{"type", "point"}, {"intensity", 6}});
+  two.animate(two.parent, {0, 6}, {0, 1});
+  const Scene both = two.maker.load();
+  const EmissionTable of_both = build_emission_table(both, segment_of(both, 0, {}), {});
+  ASSERT_EQ(of_both.probability.size(), 2u);
+  EXPECT_NEAR(std::min(of_both.probability[0], of_both.probability[1]), 0.25, 1e-9);
 }
 
 TEST(NodeVisibility, AnimationThatIsNotChosenShowsNothing) {
