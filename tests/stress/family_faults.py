@@ -1,6 +1,6 @@
-"""Small faults of scene files: five good files, in each variant one property with one wrong value. A variant is rendered
-with a warning that names the property, or refused with its name. Silence is right only if the picture is the good
-file's, bit by bit: the property then has no meaning there (a clipping plane, the name of a mesh), or the value means
+"""Small faults of scene files: five good files, in each variant one property with one wrong value. A variant is
+rendered with a warning that names the property, or refused with its name. Silence is right only if the picture is the
+good file's, bit by bit: the property then has no meaning there (a clipping plane, the name of a mesh), or the value means
 what was there before. Never a crash.
 
 The wrong values follow from the schema of glTF 2.0 below, by kind of the property and not by file. A seeded generator
@@ -19,6 +19,7 @@ from scenes import Scene
 from session import case
 
 INF = float("inf")
+TRANSFORM = "materials.pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform."
 
 # Property, by the objects in which it lies: kind, least and largest number, count of numbers. "index": of that array.
 SCHEMA = {
@@ -42,7 +43,8 @@ SCHEMA = {
     "accessors.bufferView": ("index", "bufferViews"), "accessors.componentType": ("integer", 5120, 5126),
     "accessors.count": ("integer", 1, INF), "accessors.type": ("string",), "accessors.byteOffset": ("integer", 0, INF),
     "bufferViews.buffer": ("index", "buffers"), "bufferViews.byteOffset": ("integer", 0, INF),
-    "bufferViews.byteLength": ("integer", 1, INF), "buffers.byteLength": ("integer", 1, INF), "buffers.uri": ("string",),
+    "bufferViews.byteLength": ("integer", 1, INF), "buffers.byteLength": ("integer", 1, INF),
+    "buffers.uri": ("string",),
     "materials.pbrMetallicRoughness.baseColorFactor": ("numbers", 0, 1, 4),
     "materials.pbrMetallicRoughness.metallicFactor": ("number", 0, 1),
     "materials.pbrMetallicRoughness.roughnessFactor": ("number", 0, 1),
@@ -63,7 +65,8 @@ SCHEMA = {
     "samplers.wrapS": ("integer", 10497, 33648), "samplers.wrapT": ("integer", 10497, 33648),
     "samplers.magFilter": ("integer", 9728, 9729), "samplers.minFilter": ("integer", 9728, 9987),
     "asset.version": ("string",), "asset.minVersion": ("string",), "extensionsUsed": ("strings",),
-    "extensionsRequired": ("strings",), "accessors.min": ("numbers", -INF, INF, 3), "accessors.normalized": ("boolean",),
+    "extensionsRequired": ("strings",), "accessors.min": ("numbers", -INF, INF, 3),
+    "accessors.normalized": ("boolean",),
     "accessors.max": ("numbers", -INF, INF, 3), "bufferViews.byteStride": ("integer", 4, 252),
     "bufferViews.target": ("integer", 34962, 34963), "accessors.sparse": ("object",),
     "accessors.sparse.count": ("integer", 1, INF), "accessors.sparse.indices.bufferView": ("index", "bufferViews"),
@@ -74,16 +77,16 @@ SCHEMA = {
     "materials.occlusionTexture.index": ("index", "textures"), "materials.occlusionTexture.strength": ("number", 0, 1),
     "materials.emissiveTexture.index": ("index", "textures"),
     "materials.pbrMetallicRoughness.metallicRoughnessTexture.index": ("index", "textures"),
-    "materials.pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset": ("numbers", -INF, INF, 2),
-    "materials.pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.scale": ("numbers", -INF, INF, 2),
-    "materials.pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.rotation": ("number", -INF, INF),
+    TRANSFORM + "offset": ("numbers", -INF, INF, 2), TRANSFORM + "scale": ("numbers", -INF, INF, 2),
+    TRANSFORM + "rotation": ("number", -INF, INF),
     "materials.extensions.KHR_materials_specular.specularColorFactor": ("numbers", 0, INF, 3),
     "materials.extensions.KHR_materials_volume.thicknessFactor": ("number", 0, INF),
     "materials.extensions.KHR_materials_volume.attenuationColor": ("numbers", 0, 1, 3),
     "materials.extensions.KHR_materials_volume.attenuationDistance": ("number", 0, INF),
     "cameras.orthographic": ("object",), "cameras.orthographic.xmag": ("number", 0, INF),
     "cameras.orthographic.ymag": ("number", 0, INF), "cameras.orthographic.zfar": ("number", 0, INF),
-    "extensions.KHR_lights_punctual.lights": ("objects",), "extensions.KHR_lights_punctual.lights.range": ("number", 0, INF),
+    "extensions.KHR_lights_punctual.lights": ("objects",),
+    "extensions.KHR_lights_punctual.lights.range": ("number", 0, INF),
     "skins.joints": ("indices", "nodes"), "skins.inverseBindMatrices": ("index", "accessors"),
     "cameras.type": ("string",), "cameras.perspective": ("object",), "cameras.perspective.yfov": ("number", 0, 3.14),
     "cameras.perspective.znear": ("number", 0, INF),
@@ -127,9 +130,8 @@ def wall(scene, material, **node):
     """An upright square with normals and texture coordinates; its primitive."""
     scene.mesh([-1, 0, 0, 1, 0, 0, 1, 2, 0, -1, 2, 0], [0, 1, 2, 0, 2, 3], material, [0, 0, 1] * 4, **node)
     primitive = scene.document["meshes"][-1]["primitives"][0]
-    uv = scene._accessor(array.array("f", [0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0]), "VEC3", 5126)
+    uv = scene._accessor(array.array("f", [0, 1, 1, 1, 1, 0, 0, 0]), "SCALAR", 5126)
     scene.document["accessors"][uv].update({"type": "VEC2", "count": 4})
-    del scene.document["accessors"][uv]["min"], scene.document["accessors"][uv]["max"]
     primitive["attributes"]["TEXCOORD_0"] = uv
     primitive["mode"] = 4
     return primitive
@@ -142,9 +144,10 @@ def textured():
     d["samplers"] = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9728}]
     d["textures"] = [{"source": 0, "sampler": 0}]
     material = scene.material(0.8)
-    d["materials"][material].update({"alphaMode": "MASK", "alphaCutoff": 0.25, "normalTexture": {"index": 0, "scale": 0.2},
-                                     "occlusionTexture": {"index": 0, "strength": 0.5}, "emissiveFactor": [0.1, 0.1, 0.1],
-                                     "emissiveTexture": {"index": 0}})
+    d["materials"][material].update(
+        {"alphaMode": "MASK", "alphaCutoff": 0.25, "normalTexture": {"index": 0, "scale": 0.2},
+         "occlusionTexture": {"index": 0, "strength": 0.5}, "emissiveFactor": [0.1, 0.1, 0.1],
+         "emissiveTexture": {"index": 0}})
     d["materials"][material]["pbrMetallicRoughness"].update(
         {"metallicRoughnessTexture": {"index": 0},
          "baseColorTexture": {"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": {
@@ -199,13 +202,15 @@ def instances():
     scene = stage()
     d = scene.document
     primitive = wall(scene, scene.material(0.9), name="Copies", scale=[0.3, 0.3, 0.3])
-    primitive["attributes"]["COLOR_0"] = scene._accessor(array.array("f", [1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0]), "VEC3", 5126)
+    colours = array.array("f", [1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0])
+    primitive["attributes"]["COLOR_0"] = scene._accessor(colours, "VEC3", 5126)
     for view in d["bufferViews"]:
         view["target"] = 34962
     d["bufferViews"][0]["byteStride"] = 12
     some = scene._accessor(array.array("I", [0]), "SCALAR", 5125)
     moved = scene._accessor(array.array("f", [-2, 0.5, 2]), "VEC3", 5126)
-    d["accessors"][0]["sparse"] = {"count": 1, "indices": {"bufferView": d["accessors"][some]["bufferView"], "componentType": 5125},
+    d["accessors"][0]["sparse"] = {"count": 1, "indices": {"bufferView": d["accessors"][some]["bufferView"],
+                                                           "componentType": 5125},
                                    "values": {"bufferView": d["accessors"][moved]["bufferView"]}}
     places = scene._accessor(array.array("f", [-3, 0, 0, 0, 1, 0, 3, 0, 1]), "VEC3", 5126)
     d["nodes"][-1]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}}
@@ -223,10 +228,9 @@ def specular_glossiness():
     d["textures"] = [{"source": 0, "sampler": 0}]
     name = "KHR_materials_pbrSpecularGlossiness"
     plain, textures = scene.material(0.5), scene.material(0.5)
-    d["materials"][plain]["extensions"] = {name: {"diffuseFactor": [0.5, 0.2, 0.1, 1], "specularFactor": [0.3, 0.2, 0.1],
-                                                  "glossinessFactor": 0.4}}
-    d["materials"][textures]["extensions"] = {name: {"diffuseTexture": {"index": 0}, "glossinessFactor": 0.4,
-                                                     "specularGlossinessTexture": {"index": 0}}}
+    factors = {"diffuseFactor": [0.5, 0.2, 0.1, 1], "specularFactor": [0.3, 0.2, 0.1], "glossinessFactor": 0.4}
+    maps = {"diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 0}, "glossinessFactor": 0.4}
+    d["materials"][plain]["extensions"], d["materials"][textures]["extensions"] = {name: factors}, {name: maps}
     wall(scene, plain, translation=[-1, 0, 0], scale=[0.8, 0.8, 0.8])
     wall(scene, textures, translation=[1, 0, 0], scale=[0.8, 0.8, 0.8])
     scene.extensions.add(name)
@@ -315,15 +319,18 @@ def names_it(line, path):
     if re.search(rf"\b{re.escape(str(path[-1]))}\b", line):
         return True
     for i, key in enumerate(path):
-        if isinstance(key, int) and re.search(rf"\b{path[i - 1]}\[{key}\]|\b{path[i - 1].removesuffix('s')} {key}\b", line):
+        if not isinstance(key, int):
+            continue
+        array_name = path[i - 1]
+        if re.search(rf"\b{array_name}\[{key}\]|\b{array_name.removesuffix('s')} {key}\b", line):
             return True
     return False
 
 
 def picture(s, file):
     out = s.path(".exr")
-    run = s.run("frame-render", file, "--frame", 6, "--size", "24x16", "--spp", 1, "--integrator", "path", "--threads", 1,
-                "--compression", "none", "-o", out, timeout=20)
+    run = s.run("frame-render", file, "--frame", 6, "--size", "24x16", "--spp", 1, "--integrator", "path",
+                "--threads", 1, "--compression", "none", "-o", out, timeout=20)
     return run, (exr.read(out).rgb() if run.code == 0 else None)
 
 
