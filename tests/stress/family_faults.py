@@ -1,7 +1,7 @@
 """Small faults of scene files: five good files, in each variant one property with one wrong value. A variant is
 rendered with a warning that names the property, or refused with its name. Silence is right only if the picture is the
-good file's, bit by bit: the property then has no meaning there (a clipping plane, the name of a mesh), or the value means
-what was there before. Never a crash.
+good file's, bit by bit: the property then has no meaning there (a clipping plane, the name of a mesh), or the value
+means what was there before. Never a crash.
 
 The wrong values follow from the schema of glTF 2.0 below, by kind of the property and not by file. A seeded generator
 chooses the variants."""
