@@ -65,13 +65,19 @@ struct Candidate {
   openvdb::io::GridDescriptor place;  ///< where the grid lies in the file
   std::string name;
   openvdb::GridBase::Ptr metadata;  ///< the grid: complete, or its metadata alone
-  bool is_number() const { return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>(); }
+  bool is_float() const { return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>(); }
+  bool is_integer() const {
+    return metadata->isType<openvdb::Int32Grid>() || metadata->isType<openvdb::Int64Grid>() ||
+           metadata->isType<openvdb::BoolGrid>();
+  }
+  bool is_number() const { return is_float() || is_integer(); }
+  bool is_level_set() const { return is_number() && metadata->getGridClass() == openvdb::GRID_LEVEL_SET; }
   bool is_density() const {
     return is_number() &&
            (metadata->getGridClass() == openvdb::GRID_FOG_VOLUME || metadata->getGridClass() == openvdb::GRID_UNKNOWN);
   }
   std::string kind() const {
-    return is_number() ? openvdb::GridBase::gridClassToString(metadata->getGridClass()) : metadata->type();
+    return is_float() ? openvdb::GridBase::gridClassToString(metadata->getGridClass()) : metadata->type();
   }
 };
 
@@ -161,6 +167,21 @@ class OpenFile : openvdb::io::Archive {
   openvdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<openvdb::io::StreamMetadata>();
 };
 
+/// Why a grid is refused, with what to do: the file's densities, or else how to make one.
+std::string why_no_density(const Candidate& grid, const std::vector<Candidate>& all) {
+  std::string text = "grid '" + printable(grid.name, 40) + "' is not a density but " +
+                     (grid.is_level_set() ? "a level set (distances from a surface)" : printable(grid.kind(), 60));
+  std::vector<Candidate> densities;
+  for (const Candidate& other : all)
+    if (other.is_density()) densities.push_back(other);
+  if (!densities.empty()) return text + "; choose from " + listed(densities);
+  return text +
+         (grid.is_level_set()
+              ? "; convert it to a fog volume (Houdini: Convert VDB; openvdb: tools::sdfToFogVolume) or export its "
+                "surface as a mesh"
+              : "; save the density as a grid of floats");
+}
+
 /// The grid to read: by name, else "density", else the only density grid.
 const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& wanted) {
   std::string name = wanted.empty() ? "density" : wanted;
@@ -174,9 +195,10 @@ const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& 
   std::vector<const Candidate*> found;
   for (const Candidate& grid : grids)
     if (grid.name == name) found.push_back(&grid);
-  if (found.empty() && wanted.empty())
-    for (const Candidate& grid : grids)
-      if (grid.is_density()) found.push_back(&grid);
+  for (const bool integer : {false, true})
+    if (found.empty() && wanted.empty())
+      for (const Candidate& grid : grids)
+        if (grid.is_density() && grid.is_integer() == integer) found.push_back(&grid);
   if (found.empty() && wanted.empty() && grids.size() == 1) found.push_back(&grids.front());
   if (found.empty())
     throw Refused{"has no grid " +
@@ -188,9 +210,7 @@ const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& 
     throw Refused{"has several grids that could be meant: " + listed(grids) +
                   "; choose one by NAME, or NAME:0, NAME:1 of equal names"};
   const Candidate& grid = *found[std::size_t(std::max(0L, number))];
-  if (!grid.is_density())
-    throw Refused{"grid '" + printable(grid.name, 40) + "' is not a density but " + printable(grid.kind(), 60) +
-                  "; choose from " + listed(grids)};
+  if (!grid.is_density()) throw Refused{why_no_density(grid, grids)};
   return grid;
 }
 
@@ -205,24 +225,73 @@ std::array<double, 12> affine_of(const openvdb::math::Transform& transform) {
   return rows;
 }
 
-void check(double value, const openvdb::Coord& at) {
-  if (value >= 0 && value <= 3e38) return;
-  throw Refused{"voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " + std::to_string(at.z()) +
-                ") is " + std::to_string(value) + ": a density is finite and not negative"};
-}
+/// Counts values that are no density; 0 replaces them.
+class Values {
+ public:
+  explicit Values(std::string grid) : grid_(std::move(grid)) {}
+
+  static bool is_density(double value) { return value >= 0 && value <= 3e38; }
+
+  /// Counts a value of `voxels` voxels, the first of them at `at`.
+  void count(double value, const openvdb::Coord& at, double voxels = 1) {
+    if (value != 0) ++values_;
+    if (is_density(value)) {
+      sum_ += value * voxels;
+      return;
+    }
+    if (invalid_++ == 0) first_ = at, first_value_ = value;
+    lowest_ = std::min(lowest_, value);
+    if (value < 0 && value >= -3e38) negative_ -= value * voxels;
+    else ++not_finite_;
+  }
+
+  /// What was replaced; "": nothing. Refuses a grid with so many invalid values that it is another quantity.
+  std::string note() const {
+    if (invalid_ == 0) return "";
+    const std::string first = "voxel (" + std::to_string(first_.x()) + ", " + std::to_string(first_.y()) + ", " +
+                              std::to_string(first_.z()) + ") is " + number(first_value_);
+    if (negative_ > kMostInvalid * sum_ || not_finite_ > kMostInvalid * values_)
+      throw Refused{first + ": a density is finite and not negative; " + number(invalid_) + " of " + number(values_) +
+                    " values are invalid, so '" + grid_ + "' is another quantity, or damaged"};
+    return "grid '" + grid_ + "': " + first +
+           (invalid_ > 1 ? " and " + number(invalid_ - 1) + " more are invalid" : "") +
+           "; a density is finite and not negative, so 0 replaces " + (invalid_ > 1 ? "them" : "it") +
+           (not_finite_ == 0 && invalid_ > 1 ? " (the lowest is " + number(lowest_) + ")" : "");
+  }
+
+ private:
+  /// Largest share of the values, or of their sum, that may be invalid.
+  static constexpr double kMostInvalid = 0.01;
+
+  static std::string number(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+  }
+
+  std::string grid_;
+  openvdb::Coord first_;
+  double first_value_ = 0, lowest_ = 0, sum_ = 0, negative_ = 0;
+  double values_ = 0, invalid_ = 0, not_finite_ = 0;
+};
 
 /// Converts tiles (blocks with a single value) other than 0 into voxels.
 template <class Tree>
-void expand_tiles(Tree& tree) {
+void expand_tiles(Tree& tree, Values& values) {
   std::vector<std::pair<openvdb::CoordBBox, typename Tree::ValueType>> tiles;
   double voxels = 0;
   auto it = tree.cbeginValueAll();
   it.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
   for (; it; ++it) {
     if (it.getValue() == 0) continue;
-    check(double(it.getValue()), it.getCoord());
     openvdb::CoordBBox box;
     it.getBoundingBox(box);
+    // A valid value is counted with the leaves, which the tile becomes.
+    if (const double value = double(it.getValue()); !Values::is_density(value)) {
+      values.count(value, it.getCoord(), double(box.volume()));
+      tiles.emplace_back(box, typename Tree::ValueType(0));
+      continue;
+    }
     voxels += double(box.volume());
     if (voxels > 4e9) throw Refused{"has constant regions of more than 4e9 voxels; resample it coarser"};
     tiles.emplace_back(box, it.getValue());
@@ -234,8 +303,10 @@ template <class Grid>
 void print(Grid& grid, const std::string& name) {
   auto& tree = grid.tree();
   if (tree.background() != 0)
-    throw Refused{"its density is not 0 outside its voxels (background " + std::to_string(tree.background()) + ")"};
-  expand_tiles(tree);
+    throw Refused{"its density is not 0 outside its voxels (background " + std::to_string(double(tree.background())) +
+                  ")"};
+  Values values(printable(name, 40));
+  expand_tiles(tree, values);
   VdbPipeHead head;
   head.world_from_index = affine_of(grid.transform());
   head.name_size = name.size();
@@ -247,15 +318,19 @@ void print(Grid& grid, const std::string& name) {
     return true;
   });
   head.block_count = leaves.size();
+  for (const auto* leaf : leaves)
+    for (openvdb::Index i = 0; i < 512; ++i)  // reads stored values, active or not
+      values.count(double(leaf->getValue(i)), leaf->offsetToGlobalCoord(i));
+  const std::string note = values.note();
+  head.note_size = note.size();
   std::fwrite(&head, sizeof head, 1, stdout);
   std::fwrite(name.data(), 1, name.size(), stdout);
+  std::fwrite(note.data(), 1, note.size(), stdout);
   for (const auto* leaf : leaves) {
     VoxelBlock block;
     block.origin = {leaf->origin().x(), leaf->origin().y(), leaf->origin().z()};
-    for (openvdb::Index i = 0; i < 512; ++i) {  // reads stored values, active or not
-      check(double(leaf->getValue(i)), leaf->offsetToGlobalCoord(i));
-      block.values[i] = float(leaf->getValue(i));
-    }
+    for (openvdb::Index i = 0; i < 512; ++i)
+      block.values[i] = Values::is_density(double(leaf->getValue(i))) ? float(leaf->getValue(i)) : 0.0f;
     std::fwrite(&block, sizeof block, 1, stdout);
   }
   if (std::fflush(stdout) != 0) throw Refused{"its voxels could not be handed over"};
@@ -283,6 +358,9 @@ void read(Request& request) {
   const openvdb::GridBase::Ptr loaded = file.whole(grid, grids);
   if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(loaded)) print(*floats, grid.name);
   else if (auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(loaded)) print(*doubles, grid.name);
+  else if (auto ints = openvdb::gridPtrCast<openvdb::Int32Grid>(loaded)) print(*ints, grid.name);
+  else if (auto longs = openvdb::gridPtrCast<openvdb::Int64Grid>(loaded)) print(*longs, grid.name);
+  else if (auto flags = openvdb::gridPtrCast<openvdb::BoolGrid>(loaded)) print(*flags, grid.name);
   else throw Refused{"its grid could not be read"};
 }
 

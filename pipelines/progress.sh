@@ -91,10 +91,30 @@ measured() {
     sort -g | awk 'END { if (NR) printf "%.1f", 100 * $1 }'
 }
 
+# advice LAYER WAYS: what lowers the noise of a layer of frames whose indirect light is found so (ways).
+# Emission and direct light are noisy where edges or cut-outs fill a small part of a pixel, or in half shadow.
+advice() {
+  more='a smaller ERROR takes more samples'
+  case $1,$2 in
+    emission,*) echo "$more of edges and cut-outs";;
+    direct,*) echo "$more of lamps, edges and cut-outs";;
+    specular,*) echo "$more of mirrors and glass; a little roughness spreads their bright points";;
+    caustic,*paths*) echo "INDIRECT=gather or records finds caustics by photons";;
+    caustic,*) echo 'more photons (PHOTONS) make caustics smooth';;
+    indirect,*paths*) echo "INDIRECT=records or METHOD=preview finds light that samples seldom meet, and $more";;
+    indirect,*gathering*) echo "$more, and more photons (PHOTONS) smooth what they gather";;
+    indirect,*) echo 'more photons (PHOTONS) make indirect light smooth';;
+    volume,*paths*) echo "$more of smoke";;
+    volume,*) echo 'more photons (PHOTONS) make smoke smooth';;
+    *) echo "$more";;
+  esac
+}
+
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
 # the frames. The audit is the bias that frames report of their own light. A warning follows if a
-# frame has ten times the noise that is asked for (pipelines/look.md), or if all frames are black.
+# frame has ten times the noise that is asked for (pipelines/look.md), or if all frames are black. What the warning
+# advises follows from the layer that has the most noise in this frame.
 end() {
   asked=$ERROR
   [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
@@ -107,10 +127,10 @@ end() {
   sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk |
     grep -v "$(stages | sed -n 's|^\([a-z_]*\) report .*|^\1/|p')" |
     awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
-      -v seen="$(measured)" -v asked="$asked" -v ways="$(ways)" '
+      -v seen="$(measured)" -v asked="$asked" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
       {
-        folder = $0; sub("/.*", "", folder); whole = 1
+        folder = $0; sub("/.*", "", folder); whole = 1; layer = ""; of_layer = 0; worse = 0
         while ((getline line < $0) > 0) {
           if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first is of the whole command
           if (line ~ /"mean_radiance":/) { seen_all++; seen_black += value(line) == 0 }
@@ -118,11 +138,16 @@ end() {
             one = value(line); noise[folder] += one ^ 2; counted[folder]++
             if (one > most[folder]) {
               most[folder] = one; worst[folder] = $0
-              sub(/^[^\/]*\/0*/, "", worst[folder]); sub(/[^0-9].*/, "", worst[folder])
+              sub(/^[^\/]*\/0*/, "", worst[folder]); sub(/[^0-9].*/, "", worst[folder]); worse = 1
             }
+          }
+          if (line ~ /"noise.[a-z]+.codes":/) {
+            name = line; gsub(/^.*noise[.]|[.]codes.*$/, "", name); one = value(line)
+            if (one > of_layer) { of_layer = one; layer = name }
           }
         }
         close($0)
+        if (worse) noisiest[folder] = layer
       }
       END {
         printf "%s: %.*f CPU s in all, %.1f a frame", shown, cpu < 10, cpu, cpu / frames
@@ -137,10 +162,13 @@ end() {
         # A pixel error e leaves about 305 x .18 e codes (lib/render/frame_noise.h).
         promised = 305 * .18 * asked
         if (promised > 0 && most[last] > 10 * promised)
-          printf "warning: noise is seen: frame %d has %.0f brightness steps of noise, %.1f are asked for; %s or " \
-            "METHOD=preview may find light that samples seldom meet, and a smaller ERROR takes more samples\n",
-            worst[last], most[last], promised, ways ~ /paths/ ? "INDIRECT=records" : "more photons (PHOTONS)"
-      }'
+          printf "warning: noise is seen: frame %d has %.0f brightness steps of noise%s, %.1f are asked for; " \
+            "ADVICE %s\n", worst[last], most[last], noisiest[last] ? ", most of it in layer " noisiest[last] : "", promised,
+            noisiest[last]
+      }' |
+    while IFS= read -r line; do
+      case $line in *'; ADVICE '*) echo "${line%ADVICE *}$(advice "${line##* }" "$(ways)")";; *) echo "$line";; esac
+    done
 }
 
 shown() {   # number of frames that show what the plan wants
@@ -163,6 +191,7 @@ failed() {   # failed GOAL
 case $1 in
   say) say "$2";;
   failed) failed "$2";;
+  advice) advice "$2" "$3";;
   begin | weigh | end) $1;;
   *) echo "progress.sh: '$1' is none of begin, say, weigh, end" >&2; exit 2;;
 esac

@@ -36,6 +36,8 @@ endforeach()
 # Ideas that the ablation leaves out still stand in the source as it has them: one that is gone leaves tests/bench/ablation_ideas.py.
 add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 
+add_test(NAME pipelines.advice COMMAND sh tests/pipelines/advice.sh WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+
 # Stages together, run by make at the top of the tree.
 foreach(script rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
                scenes leaving_out walkthrough filter dynamic temporal preview split smoke own_scene)

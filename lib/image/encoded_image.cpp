@@ -47,6 +47,7 @@ bool jpeg_size(Bytes bytes, ImageHeader& header) {
       if (at + 9 > bytes.size()) return false;
       header.height = int(big_endian(bytes, at + 5, 2));
       header.width = int(big_endian(bytes, at + 7, 2));
+      header.four_inks = at + 9 < bytes.size() && bytes[at + 9] == 4;
       return true;
     }
     if (marker == 0xd9 || marker == 0xda) return false;  // end of the image, or pixels before any frame

@@ -2,18 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace tempolux {
 
-/// A PNG, JPEG or WebP file in memory, not decoded.
+struct SpecularGlossiness;  // specular_glossiness.h
+
+/// A PNG, JPEG or WebP file in memory, not decoded; or an image that is made from such files.
 struct EncodedImage {
   std::string place;  ///< source of the bytes, for messages
   std::vector<unsigned char> bytes;
   int width = 0, height = 0;  ///< px, from its header
-  std::string digest;         ///< of the bytes
+  std::string digest;         ///< of the bytes, or of what the image is made from
+  /// Makes the image when it is decoded. nullptr: the bytes are the image.
+  std::shared_ptr<const SpecularGlossiness> made_from{};
 };
 
 /// Format and size of an encoded image.
@@ -22,6 +27,7 @@ struct ImageHeader {
   Format format = Format::png;
   int width = 0, height = 0;  ///< px, at least 1
   bool has_alpha = false;     ///< of a WebP
+  bool four_inks = false;     ///< of a JPEG: CMYK or YCCK
 };
 
 /// Format and size of a PNG, JPEG or WebP file from its first bytes, without decoding or allocating. Throws InputError
@@ -38,7 +44,7 @@ struct CodedPixels {
 
 /// Decodes an image. What the file says about its colour space (gAMA, iCCP, ...) is ignored: in glTF 2.0, 3.8.2, the
 /// texture decides. A child process decodes WebP (lib/core/unpack.h). Throws InputError "PLACE: ..." if the file is
-/// damaged or truncated, has more than max_pixels or another size than its header says, or is JPEG in CMYK.
+/// damaged or truncated, or has more than max_pixels or another size than its header says.
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels);
 
 }  // namespace tempolux

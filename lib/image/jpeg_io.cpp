@@ -79,9 +79,10 @@ bool start_reading(Session& session, std::span<const unsigned char> bytes) {
   session.progress.progress_monitor = on_progress;
   session.info.progress = &session.progress;
   jpeg_read_header(&session.info, TRUE);
-  if (session.info.num_components != 1 && session.info.num_components != 3)
-    stop(reinterpret_cast<j_common_ptr>(&session.info), "four channels (CMYK); convert it to RGB");
-  session.info.out_color_space = session.info.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  const int channels = session.info.num_components;
+  if (channels != 1 && channels != 3 && channels != 4)
+    stop(reinterpret_cast<j_common_ptr>(&session.info), "neither one, three nor four channels; convert it to RGB");
+  session.info.out_color_space = channels == 1 ? JCS_GRAYSCALE : channels == 3 ? JCS_RGB : JCS_CMYK;
   session.info.dct_method = JDCT_ISLOW;  // integer arithmetic: the same bytes on every machine
   return true;
 }
@@ -95,6 +96,20 @@ bool read_rows(Session& session, std::uint8_t* to, std::size_t row) {
   }
   jpeg_finish_decompress(&session.info);
   return true;
+}
+
+/// From four inks to RGB. `lights`: the codes are 255 - ink.
+void print_inks(CodedPixels& pixels, bool lights) {
+  const std::size_t count = pixels.bytes.size() / 4;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto light = [&](std::size_t c) {
+      return unsigned(lights ? pixels.bytes[4 * i + c] : 255 - pixels.bytes[4 * i + c]);
+    };
+    const unsigned black = light(3);
+    for (std::size_t c = 0; c < 3; ++c) pixels.bytes[3 * i + c] = std::uint8_t((light(c) * black + 127) / 255);
+  }
+  pixels.bytes.resize(3 * count);
+  pixels.channels = 3;
 }
 
 }  // namespace
@@ -116,6 +131,7 @@ CodedPixels decode_jpeg(std::span<const unsigned char> bytes, const std::string&
   const std::size_t row = std::size_t(pixels.width) * std::size_t(pixels.channels);
   pixels.bytes.resize(row * std::size_t(pixels.height));
   if (!read_rows(session, pixels.bytes.data(), row)) fail(one_line(session.message) + "; the file is damaged");
+  if (pixels.channels == 4) print_inks(pixels, session.info.saw_Adobe_marker != FALSE);
   return pixels;
 }
 

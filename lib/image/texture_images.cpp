@@ -4,8 +4,21 @@
 
 #include "formats/error.h"
 #include "lib/image/images_by_module.h"
+#include "lib/image/specular_glossiness.h"
 
 namespace tempolux {
+namespace {
+
+CodedPixels pixels_of(const std::vector<EncodedImage>& images, std::size_t image, std::uint64_t max_pixels) {
+  if (!images[image].made_from) return decode_by_module(images[image], max_pixels);
+  const SpecularGlossiness& from = *images[image].made_from;
+  CodedPixels diffuse, specular;
+  if (from.diffuse != from.kWhite) diffuse = decode_by_module(images[from.diffuse], max_pixels);
+  if (from.specular != from.kWhite) specular = decode_by_module(images[from.specular], max_pixels);
+  return from.make(diffuse, specular);
+}
+
+}  // namespace
 
 TextureImages::TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits)
     : images_(std::move(images)),
@@ -19,7 +32,7 @@ const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer t
   const EncodedImage& source = images_[image];
   std::unique_ptr<TexturePyramid> pyramid;
   try {
-    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer);
+    pyramid = std::make_unique<TexturePyramid>(pixels_of(images_, image, limits_.max_pixels), transfer);
   } catch (const std::bad_alloc&) {
     throw ResourceError(source.place + ": not enough memory to decode it; use smaller images");
   }

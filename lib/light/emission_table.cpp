@@ -48,6 +48,7 @@ void add_environment(const EmissionTable& table, std::vector<double>& weights) {
 bool any_flux_changes(const SceneFrame& frame) {
   if (std::ranges::any_of(frame.segment.changes, [](const PropertyChange& c) { return c.carries != "camera"; }))
     return true;
+  if (frame.segment.hides_at_times) return true;
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
     if (frame.materials[frame.surfaces[s].material].emissive()) return true;
   return false;  // the flux of a punctual light does not depend on its position

@@ -101,8 +101,10 @@ Animator::Animator(const Scene& scene) : scene_(&scene), tracks_(scene.nodes.siz
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
       anything_animated_ = true;
-      (track.path <= Path::weights ? tracks_[std::size_t(track.target)] : property_tracks_).push_back(&track);
+      anything_hides_ |= track.path == Path::visible;
+      (track.path <= Path::visible ? tracks_[std::size_t(track.target)] : property_tracks_).push_back(&track);
     }
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) anything_hides_ |= !scene.nodes[n].visible;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n)
     if (scene.nodes[n].skin >= 0) joint_used_[n] = joints_used(scene, scene.nodes[n]);
 }
@@ -128,12 +130,25 @@ Affine Animator::local(std::size_t n, double time_s) const {
   Vec3d translation = node.translation, scale = node.scale;
   std::array<double, 4> rotation = node.rotation;
   for (const AnimationTrack* track : tracks_[n]) {
-    if (track->path == Path::weights) continue;
+    if (track->path == Path::weights || track->path == Path::visible) continue;
     const Value v = evaluate(*track, time_s);
     if (track->path == Path::rotation) rotation = v;
     else (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
   }
   return affine_from_trs(translation, rotation, scale);
+}
+
+std::vector<std::uint8_t> Animator::seen(double time_s) const {
+  std::vector<std::uint8_t> seen(scene_->nodes.size(), 1);
+  if (!anything_hides_) return seen;
+  for (std::size_t n = 0; n < seen.size(); ++n) {
+    const Node& node = scene_->nodes[n];
+    bool visible = node.visible;
+    for (const AnimationTrack* track : tracks_[n])
+      if (track->path == Path::visible) visible = evaluate(*track, time_s)[0] != 0;
+    seen[n] = visible && (node.parent < 0 || seen[std::size_t(node.parent)]);
+  }
+  return seen;
 }
 
 std::vector<Affine> Animator::world_from_node(double time_s) const {

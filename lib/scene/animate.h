@@ -38,6 +38,8 @@ class Animator {
   /// Morph weights and joints of a node's mesh at a time [s]; `world_from_node` is that of the same time. Empty for a
   /// rigid mesh.
   Pose pose(std::size_t node, double time_s, const std::vector<Affine>& world_from_node) const;
+  /// For each node, 1 if it and all its ancestors are visible at a time [s] (KHR_node_visibility).
+  std::vector<std::uint8_t> seen(double time_s) const;
   /// True if the scene has any track.
   bool anything_animated() const { return anything_animated_; }
   /// The tracks of one node.
@@ -61,6 +63,7 @@ class Animator {
   /// For each node with a skin and each joint of the skin: 1 if a vertex of the mesh follows the joint.
   std::vector<std::vector<std::uint8_t>> joint_used_;
   bool anything_animated_ = false;
+  bool anything_hides_ = false;  ///< true if some node is not visible at rest or has a track of its visibility
 };
 
 /// Kind of the track's target: "node", "material", "light" or "camera".

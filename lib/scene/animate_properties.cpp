@@ -26,7 +26,7 @@ void check_product(const Scene& scene, const char* array, int index, const Rgb& 
 }  // namespace
 
 const char* kind_of(Path path) {
-  return path <= Path::weights      ? "node"
+  return path <= Path::visible      ? "node"
          : path == Path::material   ? "material"
          : path <= Path::outer_cone ? "light"
                                     : "camera";

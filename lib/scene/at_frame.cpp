@@ -17,14 +17,18 @@ namespace {
 /// Lumens per watt at 555 nm, the factor of Blender's unit mode "Standard".
 constexpr float kLuminousEfficacy = 683;
 
-std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animator, double time_s, Vec3d origin,
-                                      const std::vector<Affine>& world, const TimeOptions& options) {
+/// Lights of the nodes that the segment shows; where a node is hidden at this time, its light is dark.
+std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animator, double time_s,
+                                      const Segment& segment, const std::vector<Affine>& world,
+                                      const TimeOptions& options) {
   std::vector<PlacedLight> lights;
+  const Vec3d origin = segment.origin;
+  const std::vector<std::uint8_t> seen = animator.seen(time_s);
   const float unit = options.light_units == "spec" ? 1 / kLuminousEfficacy : 1.0f;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].light < 0) continue;
+    if (scene.nodes[n].light < 0 || segment.hides(std::uint32_t(n))) continue;
     PlacedLight placed{animator.light(std::size_t(scene.nodes[n].light), time_s), {}, {}, std::uint32_t(n)};
-    placed.light.intensity *= unit;
+    placed.light.intensity *= seen[n] ? unit : 0.0f;
     placed.position = Vec3(world[n].translation - origin);
     placed.direction = Vec3(normalize(world[n].direction({0, 0, -1})));
     if (!is_finite(placed.position) || !(max_component(abs(placed.position)) < kMaxCoordinate))
@@ -93,7 +97,7 @@ SceneFrame SegmentScene::at(double frame) const {
   at.materials = materials_stay_ ? scene_->materials : animator_->materials(at.time_s);
   at.images = scene_->images;
   for (std::size_t c = 0; c < scene_->cameras.size(); ++c) at.cameras.push_back(animator_->camera(c, at.time_s));
-  at.lights = place_lights(*scene_, *animator_, at.time_s, segment_.origin, world, options_);
+  at.lights = place_lights(*scene_, *animator_, at.time_s, segment_, world, options_);
   at.environment = scene_->environment.get();
   at.origin = segment_.origin;
   at.bounds = bounds_;

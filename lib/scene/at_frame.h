@@ -28,8 +28,11 @@ struct PropertyChange {
 struct Segment {
   int first = 0, last = 0;
   /// For each node, 1 if its state differs between two frames: its world transform, the morph weights and joints of its
-  /// mesh, its materials or its light.
+  /// mesh, its materials, its light, or whether it is seen. A node that is hidden does not move.
   std::vector<std::uint8_t> node_moves;
+  /// For each node, 1 if it is hidden at all frames (KHR_node_visibility): its mesh has no surfaces, its light is
+  /// absent.
+  std::vector<std::uint8_t> node_hidden;
   std::vector<std::string> why_moves;   ///< for each node, what differs: "translation of MovingBox"; "": nothing
   std::vector<PropertyChange> changes;  ///< materials, lights and cameras that differ between two frames
   /// World position of scene space's origin. 0, unless the scene is so far from the world's origin that float32 would
@@ -37,6 +40,8 @@ struct Segment {
   Vec3d origin{};
   Box3d world_bounds;  ///< of all geometry over the whole segment, world space, m
 
+  bool hides_at_times = false;  ///< true if a node is hidden at some frames, but not at all
+  bool hides(std::uint32_t node) const { return node < node_hidden.size() && node_hidden[node] != 0; }
   /// True if the node's state differs between two frames. False in a scene made by hand, which has no nodes.
   bool moves(std::uint32_t node) const { return node < node_moves.size() && node_moves[node] != 0; }
 };
@@ -82,7 +87,7 @@ class SharedArray {
 
 /// The triangles of one primitive of one node, in scene space (world - Segment::origin). Cheap to copy.
 /// A transform may shrink triangles to zero area at some frames. Such a triangle has a normal of zero, not NaN; no ray
-/// hits it and it emits nothing.
+/// hits it and it emits nothing. The surfaces of a node that is hidden at some frames only are shrunk to a point there.
 /// If many nodes or instances share a large primitive, the surface is `instanced`: it stores no vertices, and
 /// position() and normal() transform the primitive's. Both forms give the same numbers.
 struct Surface {

@@ -56,13 +56,16 @@ std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   const Sharing sharing(scene);
   const std::vector<Affine> first = animator.world_from_node(0);
   std::vector<Piece> pieces;
+  const std::vector<std::uint8_t> seen_first = animator.seen(0);
   segment.node_moves.assign(scene.nodes.size(), 0);
+  segment.node_hidden.clear();  // a node that is hidden now is shrunk to a point, which is no piece
   add_surfaces(place_surfaces(scene, animator, sharing, segment, {0, first}, false), pieces);
   for (int i = 1; i < kTimes && animator.anything_animated(); ++i) {
     const double time = scene.duration_s * i / (kTimes - 1);
     const std::vector<Affine> world = animator.world_from_node(time);
+    const std::vector<std::uint8_t> seen = animator.seen(time);
     for (std::size_t n = 0; n < scene.nodes.size(); ++n)
-      segment.node_moves[n] = deforms(scene, scene.nodes[n]) || !(world[n] == first[n]);
+      segment.node_moves[n] = deforms(scene, scene.nodes[n]) || !(world[n] == first[n]) || seen[n] != seen_first[n];
     add_surfaces(place_surfaces(scene, animator, sharing, segment, {time, world}, true), pieces);
   }
   return pieces;

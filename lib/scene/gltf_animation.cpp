@@ -43,8 +43,10 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
   if (channel.target_node == -1) return false;
   if (channel.target_node < 0 || std::size_t(channel.target_node) >= import.model.nodes.size())
     import.fail(place + ".target.node", "node " + std::to_string(channel.target_node) + " does not exist");
-  // A node of another scene of the file is not imported, so its channel is ignored.
-  return import.node_from_source[std::size_t(channel.target_node)] != -1;
+  // A node of another scene of the file is not imported, so its channel is ignored. A node that is never seen has no
+  // mesh, so its morph weights are ignored.
+  const int node = import.node_from_source[std::size_t(channel.target_node)];
+  return node != -1 && !(path == Path::weights && import.scene.nodes[std::size_t(node)].never_seen);
 }
 
 /// Numbers per value of a track; for weights, the number of morph targets of the node's mesh.
@@ -105,6 +107,13 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
   if (path < Path::weights && import.scene.nodes[std::size_t(target)].has_matrix)
     import.fail(place, "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
+  if (path == Path::visible && track.interpolation != Interpolation::step) {
+    if (track.interpolation == Interpolation::cubic_spline)
+      import.fail(place, "is a spline, but true and false cannot be");
+    track.interpolation = Interpolation::step;
+    import.mend(place, "visibility whose interpolation is not STEP is played as STEP", 1);
+    return track;
+  }
   if (!interpolation)
     import.mend(place,
                 "channels whose interpolation \"" + one_line(sampler.interpolation, 40) +
@@ -130,6 +139,11 @@ void check_name(const Import& import, const std::string& asked) {
 }
 
 }  // namespace
+
+bool is_played(const tinygltf::Model& model, std::size_t animation, const std::string& only) {
+  return animation < model.animations.size() &&
+         (only.empty() || name_of(model.animations[animation], animation) == only);
+}
 
 std::size_t target_count(const tinygltf::Mesh& mesh) {
   return mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
@@ -175,7 +189,7 @@ void import_animations(Import& import, const std::string& only) {
   std::set<std::tuple<int, Path, std::size_t>> animated;
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
-    if (!only.empty() && name_of(source, a) != only) continue;
+    if (!is_played(import.model, a, only)) continue;
     std::vector<AnimationTrack> tracks = read_tracks(import, a, !only.empty());
     Animation animation;
     animation.name = source.name;

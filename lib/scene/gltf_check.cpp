@@ -143,6 +143,7 @@ void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::s
       std::memcpy(&elements.own[i * size], elements.first + i * elements.stride, size);
   if (accessor.sparse.isSparse) {
     const auto& sparse = accessor.sparse;
+    if (sparse.count == 0) import.mend(place, "a sparse part of no elements (sparse.count 0) replaces nothing", 1);
     const int index_type = sparse.indices.componentType;
     const unsigned char* indices =
         view_bytes(import.model, sparse.indices.bufferView, std::uint64_t(sparse.indices.byteOffset));

@@ -17,7 +17,13 @@ std::vector<Vec3> read_displacements(Import& import, const std::map<std::string,
   if (found == target.end()) return {};
   std::vector<std::uint32_t> unusable;
   std::vector<Vec3> values = read_vec3(import, found->second, place + "." + attribute, unusable);
-  if (values.size() != vertices) import.fail(place, "does not have as many displacements as the mesh has vertices");
+  if (values.size() != vertices) {
+    import.mend(
+        place + "." + attribute,
+        std::to_string(values.size()) + " displacements for " + std::to_string(vertices) + " positions are left out",
+        1);
+    return {};
+  }
   if (!unusable.empty())
     import.mend(place + "." + attribute, "displacements with NaN or infinity are left out", unusable.size());
   return values;
@@ -72,8 +78,10 @@ Skin read_skin(Import& import, std::size_t index) {
 /// Index in the scene of the skin `source` of the file, which is read at its first use; -1 if the mesh has no joints.
 int skin_of(Import& import, const Node& node, int source, std::vector<int>& skin_from_source) {
   const std::string place = place_of("nodes", node.source_index, node.name);
-  if (source < 0 || std::size_t(source) >= import.model.skins.size())
-    import.fail(place + ".skin", "skin " + std::to_string(source) + " does not exist");
+  if (source < 0 || std::size_t(source) >= import.model.skins.size()) {
+    import.mend(place + ".skin", "skin " + std::to_string(source) + " does not exist; the mesh stays rigid", 1);
+    return -1;
+  }
   const Mesh& mesh = import.scene.meshes[std::size_t(node.mesh)];
   std::uint32_t largest = 0;
   bool follows = false;
@@ -98,15 +106,19 @@ int skin_of(Import& import, const Node& node, int source, std::vector<int>& skin
   return index;
 }
 
-std::vector<double> weights_of(const Import& import, const Node& node) {
+std::vector<double> weights_of(Import& import, const Node& node) {
   const tinygltf::Node& source = import.model.nodes[node.source_index];
   const tinygltf::Mesh& mesh = import.model.meshes[std::size_t(source.mesh)];
   const std::size_t count = target_count(mesh);
   if (count == 0) return {};
   const std::vector<double>& given = source.weights.empty() ? mesh.weights : source.weights;
-  if (!given.empty() && given.size() != count)
-    import.fail(place_of("nodes", node.source_index, node.name) + ".weights",
-                std::to_string(given.size()) + " weights for " + std::to_string(count) + " morph targets");
+  if (!given.empty() && given.size() != count) {
+    import.mend(place_of("nodes", node.source_index, node.name) + ".weights",
+                std::to_string(given.size()) + " weights for " + std::to_string(count) +
+                    " morph targets are left out: they are 0",
+                1);
+    return std::vector<double>(count, 0);
+  }
   for (const double weight : given)
     if (!std::isfinite(weight))
       import.fail(place_of("nodes", node.source_index, node.name) + ".weights", "is not finite");
@@ -119,7 +131,10 @@ std::vector<double> instance_numbers(Import& import, const tinygltf::Value& attr
                                      std::size_t components, std::vector<bool>& usable, const std::string& place) {
   if (!attributes.Has(name)) return {};
   const tinygltf::Value& accessor = attributes.Get(name);
-  if (!accessor.IsInt()) import.fail(place + "." + name, "is not the index of an accessor");
+  if (!accessor.IsInt()) {
+    import.mend(place + "." + name, "what is not the index of an accessor is left out", 1);
+    return {};
+  }
   std::vector<std::uint32_t> unusable;
   std::vector<double> numbers =
       read_numbers(import, accessor.GetNumberAsInt(), int(components), place + "." + name, unusable);
@@ -136,8 +151,10 @@ std::vector<Affine> instances_of(Import& import, const Node& node) {
   if (found == extensions.end()) return {};
   const std::string place =
       place_of("nodes", node.source_index, node.name) + ".extensions.EXT_mesh_gpu_instancing.attributes";
-  if (!found->second.IsObject() || !found->second.Has("attributes") || !found->second.Get("attributes").IsObject())
-    import.fail(place, "is missing");
+  if (!found->second.IsObject() || !found->second.Has("attributes") || !found->second.Get("attributes").IsObject()) {
+    import.mend(place, "instances without attributes are left out: the mesh is drawn once", 1);
+    return {};
+  }
   if (node.skin >= 0) {
     import.ignore("instances of skinned meshes");
     return {};
@@ -193,8 +210,11 @@ void read_influences(Import& import, const tinygltf::Primitive& source, const st
       if (weight < 0) weight = 0, ++left_out;
     if (left_out > 0)
       import.mend(place + "." + w->first, "joint weights below 0, NaN or infinite are left out", left_out);
-    if (joints.back().size() != 4 * primitive.positions.size() || weights.back().size() != joints.back().size())
-      import.fail(place, "does not have as many joints and weights as positions");
+    if (joints.back().size() == 4 * primitive.positions.size() && weights.back().size() == joints.back().size())
+      continue;
+    import.mend(place + "." + w->first, "joints or weights of another number than positions are left out", 1);
+    joints.pop_back(), weights.pop_back();
+    break;
   }
   if (joints.empty()) return;
   const std::size_t n = primitive.influences_per_vertex = 4 * joints.size();

@@ -28,9 +28,28 @@ constexpr std::array kExtensions{
     Extension{"KHR_texture_basisu",
               "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb` (it calls ktx of KTX-Software)",
               true},
-    Extension{"KHR_materials_pbrSpecularGlossiness",
-              "convert its materials with `gltf-transform metalrough IN.glb OUT.glb`"},
     Extension{"KHR_gaussian_splatting", "only triangles can be rendered"}};
+
+/// Extensions that a file may require although it can be rendered without them, and what is then rendered.
+struct Dispensable {
+  const char *name, *rendered;
+};
+constexpr const char* kRest = "the rest of its materials is rendered";
+constexpr const char* kNothing = "it changes no picture";
+constexpr std::array kDispensable{Dispensable{"KHR_materials_variants", "the default variant is rendered"},
+                                  Dispensable{"KHR_materials_anisotropy", kRest},
+                                  Dispensable{"KHR_materials_clearcoat", kRest},
+                                  Dispensable{"KHR_materials_diffuse_transmission", kRest},
+                                  Dispensable{"KHR_materials_dispersion", kRest},
+                                  Dispensable{"KHR_materials_iridescence", kRest},
+                                  Dispensable{"KHR_materials_sheen", kRest},
+                                  Dispensable{"KHR_materials_volume_scatter", kRest},
+                                  Dispensable{"KHR_interactivity", kNothing},
+                                  Dispensable{"KHR_node_hoverability", kNothing},
+                                  Dispensable{"KHR_node_selectability", kNothing},
+                                  Dispensable{"KHR_xmp_json_ld", kNothing},
+                                  Dispensable{"EXT_mesh_features", kNothing},
+                                  Dispensable{"EXT_structural_metadata", kNothing}};
 
 [[noreturn]] void refuse(const std::string& file, const std::string& place, const std::string& name,
                          const std::string& remedy) {
@@ -60,7 +79,11 @@ void check_packing(const Json& document, const std::string& file, const std::set
                    std::set<std::string>& handled, std::vector<std::string>& warnings) {
   for (const Json& required : array_of(document, "extensionsRequired")) {
     const std::string name = required.get<std::string>();
-    if (!known.contains(name)) refuse(file, "extensionsRequired", name, remedy_of(name));
+    if (known.contains(name)) continue;
+    const auto dispensable = std::ranges::find_if(kDispensable, [&](const Dispensable& d) { return name == d.name; });
+    if (dispensable == kDispensable.end()) refuse(file, "extensionsRequired", name, remedy_of(name));
+    if (handled.insert(name).second)
+      warnings.push_back(file + ": extensionsRequired: " + name + " is left out: " + dispensable->rendered);
   }
   for (const Extension& extension : kExtensions) {
     if (!extension.is_of_textures) continue;
@@ -75,6 +98,24 @@ void check_packing(const Json& document, const std::string& file, const std::set
 bool has_extension(const Json& object, const char* name) {
   const auto extensions = object.find("extensions");
   return extensions != object.end() && extensions->contains(name);
+}
+
+void mark_stand_ins(Json& document, bool has_chunk) {
+  Json none = Json::array();
+  Json& buffers = document.contains("buffers") ? document["buffers"] : none;
+  std::vector<std::size_t> views(buffers.size(), 0), packed(buffers.size(), 0);
+  const char* const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+  std::vector<const char*> name_of(buffers.size(), nullptr);
+  for (const Json& view : array_of(document, "bufferViews")) {
+    const std::size_t buffer = view["buffer"].get<std::size_t>();
+    if (buffer >= buffers.size()) continue;
+    ++views[buffer];
+    for (const char* name : names)
+      if (has_extension(view, name)) ++packed[buffer], name_of[buffer] = name;
+  }
+  for (std::size_t b = 0; b < buffers.size(); ++b)
+    if (!buffers[b].contains("uri") && (b > 0 || !has_chunk) && views[b] > 0 && packed[b] == views[b])
+      buffers[b]["extensions"][name_of[b]] = {{"fallback", true}};
 }
 
 bool is_stand_in(const Json& buffer) {

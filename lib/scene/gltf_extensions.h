@@ -10,10 +10,10 @@
 
 namespace tempolux::gltf {
 
-/// Throws InputError if the file requires an extension that is not in `known`, or has an image only in the format of an
-/// unknown extension; the message names the extension, the place, and the command that makes a readable file. If the
-/// file also has the image as PNG or JPEG, `warnings` gets a line, and the extension goes to `handled`. Call after
-/// check_types() and before prune().
+/// Throws InputError if the file requires an extension that is not in `known` and without which it cannot be rendered,
+/// or has an image only in the format of an unknown extension; the message names the extension, the place, and the
+/// command that makes a readable file. If the file also has the image as PNG or JPEG, `warnings` gets a line, and the
+/// extension goes to `handled`. Call after check_types() and before prune().
 void check_packing(const Json& document, const std::string& file, const std::set<std::string>& known,
                    std::set<std::string>& handled, std::vector<std::string>& warnings);
 
@@ -22,6 +22,9 @@ std::string remedy_of(const std::string& name);
 
 /// True if an object of the document has the extension.
 bool has_extension(const Json& object, const char* name);
+/// Marks the buffers without bytes whose bufferViews are all packed by meshopt, as files may do themselves.
+/// `has_chunk`: the file has a binary chunk, which is buffer 0.
+void mark_stand_ins(Json& document, bool has_chunk);
 /// True if a buffer has no bytes, since its bufferViews are packed by meshopt.
 bool is_stand_in(const Json& buffer);
 /// True if the extension packs a bufferView, or a primitive's accessors, and the file has no plain copy of all the

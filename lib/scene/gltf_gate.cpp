@@ -32,9 +32,17 @@ constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkB
 // Extensions that this program reads. Properties of them that it does not render cause warnings (gltf_material.cpp).
 /// The extensions that this program reads: those of materials by the table of their properties.
 const std::set<std::string> kKnown = [] {
-  std::set<std::string> known{"KHR_lights_punctual",        "KHR_mesh_quantization",   "KHR_texture_transform",
-                              "EXT_mesh_gpu_instancing",    "KHR_animation_pointer",   "EXT_texture_webp",
-                              "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"};
+  std::set<std::string> known{"KHR_lights_punctual",
+                              "KHR_mesh_quantization",
+                              "KHR_texture_transform",
+                              "EXT_mesh_gpu_instancing",
+                              "KHR_animation_pointer",
+                              "EXT_texture_webp",
+                              "KHR_draco_mesh_compression",
+                              "EXT_meshopt_compression",
+                              "KHR_meshopt_compression",
+                              "KHR_node_visibility",
+                              "KHR_materials_pbrSpecularGlossiness"};
   for (const MaterialProperty& property : material_properties())
     if (const std::string_view name = extension_of(property.pointer); !name.empty()) known.emplace(name);
   return known;
@@ -315,12 +323,18 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   gated.files.push_back(path);
   gated.byte_count = container.json.size();
   container.json = {};
-  check_types(document, path);
+  LeftOut left_out;
+  check_types(document, path, left_out);
   check_version(document, path);
   keep_node_extras(document, gated);
   keep_lens_shifts(document, path, gated);
   check_extensions(document, path, gated);
+  leave_out_nulls(document, left_out);
+  mend_cameras(document, left_out);
+  mend_lights(document, left_out);
+  for (std::string& warning : left_out.warnings(path)) gated.warnings.push_back(std::move(warning));
   keep_pointer_channels(document, gated);
+  mark_stand_ins(document, container.bin.length > 0);
   if (document.contains("buffers"))
     for (std::size_t i = 0; i < document["buffers"].size(); ++i)
       approve_buffer(document["buffers"][i], i, path, container, options, gated);

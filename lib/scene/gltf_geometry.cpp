@@ -71,11 +71,24 @@ std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitiv
   return indices;
 }
 
+/// True if there is one value for each vertex; if not, warns that the values are left out.
+bool as_many(Import& import, std::size_t values, const Primitive& primitive, const std::string& place,
+             const char* name) {
+  if (values == primitive.positions.size()) return true;
+  import.mend(place,
+              std::to_string(values) + " " + name + " for " + std::to_string(primitive.positions.size()) +
+                  " positions are left out",
+              1);
+  return false;
+}
+
 void read_normals(Import& import, int accessor, const std::string& place, Primitive& primitive) {
   std::vector<std::uint32_t> unusable;
   primitive.normals = read_vec3(import, accessor, place, unusable);  // unusable normals are set to 0
-  if (primitive.normals.size() != primitive.positions.size())
-    import.fail(place, "there are not as many normals as positions");
+  if (!as_many(import, primitive.normals.size(), primitive, place, "normals")) {
+    primitive.normals.clear();
+    return;
+  }
   unusable.clear();
   for (std::size_t v = 0; v < primitive.normals.size(); ++v) {
     const Vec3d unit = normalize(Vec3d(primitive.normals[v]));
@@ -102,7 +115,7 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   std::vector<std::uint32_t> unusable;  // become 0
   const std::vector<double> numbers = read_numbers(import, found->second, 4, place, unusable);
   const std::size_t count = primitive.positions.size();
-  if (numbers.size() != 4 * count) import.fail(place, "there are not as many tangents as positions");
+  if (!as_many(import, numbers.size() / 4, primitive, place, "tangents")) return;
   import.take_memory(count * (sizeof(Vec3) + sizeof(float)), place);
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3d unit = normalize(Vec3d{numbers[4 * v], numbers[4 * v + 1], numbers[4 * v + 2]});
@@ -122,8 +135,7 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   if (found == source.attributes.end()) return {};
   std::vector<std::uint32_t> unusable;
   std::vector<Vec2> uvs = read_vec2(import, found->second, place + "." + name, unusable);
-  if (uvs.size() != primitive.positions.size())
-    import.fail(place + "." + name, "there are not as many texture coordinates as positions");
+  if (!as_many(import, uvs.size(), primitive, place + "." + name, "texture coordinates")) return {};
   static_assert(sizeof(Vec2) == 2 * sizeof(float));
   if (unusable.empty()) return uvs;
   mend_from_neighbours(primitive, unusable, {&uvs.front().x, 2 * uvs.size()}, 2);
@@ -144,7 +156,7 @@ void read_colors(Import& import, const tinygltf::Primitive& source, const std::s
   std::vector<std::uint32_t> unusable;
   const std::vector<double> numbers = read_numbers(import, found->second, int(components), place, unusable);
   const std::size_t count = primitive.positions.size();
-  if (numbers.size() != components * count) import.fail(place, "there are not as many colours as positions");
+  if (!as_many(import, numbers.size() / components, primitive, place, "colours")) return;
   import.take_memory(count * sizeof(primitive.colors[0]), place);
   primitive.colors.assign(count, {1, 1, 1, 1});
   bool outside = false;
@@ -180,8 +192,11 @@ void note_ignored(Import& import, const tinygltf::Primitive& source) {
 /// Reads a primitive; its triangles are empty if it draws nothing.
 Primitive read_primitive(Import& import, const tinygltf::Primitive& source, const std::string& place) {
   Primitive primitive;
-  if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-    import.fail(place + ".mode", std::to_string(source.mode) + " is not one of glTF's");
+  if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    import.mend(place + ".mode",
+                "mode " + std::to_string(source.mode) + " is not one of glTF's; the primitive is left out", 1);
+    return primitive;
+  }
   if (source.mode < TINYGLTF_MODE_TRIANGLES) {
     import.ignore("points and lines");
     return primitive;
@@ -207,10 +222,12 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
     read_normals(import, normal->second, place + ".NORMAL", primitive);
   primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive, place);
   primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive, place);
-  if (source.material < -1 || source.material >= int(import.model.materials.size()))
-    import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
+  const bool has_material = source.material >= 0 && source.material < int(import.model.materials.size());
+  if (!has_material && source.material != -1)
+    import.mend(place + ".material",
+                "material " + std::to_string(source.material) + " does not exist; glTF's default material is taken", 1);
   primitive.material =
-      source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1) : std::uint32_t(source.material);
+      !has_material ? std::uint32_t(import.scene.materials.size() - 1) : std::uint32_t(source.material);
   read_colors(import, source, place + ".COLOR_0", primitive);
   read_tangents(import, source, place + ".TANGENT", primitive);
   read_targets(import, source, place, primitive);
@@ -261,7 +278,11 @@ void import_meshes(Import& import) {
     node.object = std::uint32_t(scene.object_names.size());
     scene.object_names.push_back(node.name.empty() ? scene.meshes[std::size_t(node.mesh)].name : node.name);
   }
-  if (scene.meshes.empty()) import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
+  if (scene.meshes.empty())
+    import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render" +
+                             std::string(std::ranges::any_of(scene.nodes, &Node::never_seen)
+                                             ? " (KHR_node_visibility hides some nodes)"
+                                             : ""));
 }
 
 }  // namespace tempolux::gltf

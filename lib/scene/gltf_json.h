@@ -1,9 +1,12 @@
 // lib/scene/gltf_json.h -- parses the JSON of a glTF file and checks its types; private to the gate.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lib/core/json.h"
 #include "lib/scene/gltf_place.h"
@@ -19,9 +22,38 @@ Json parse_json(std::string_view text, const std::string& file);
 /// An array of the document by its key; empty if it is missing.
 const Json& array_of(const Json& document, const char* key);
 
+/// Collects what is left out of a document or replaced there: one warning for each kind of place and reason.
+class LeftOut {
+ public:
+  /// `value` was left out, since it `what`: "must be a number". "": the whole object, or there was no value.
+  void add(const std::string& place, const std::string& value, const std::string& what);
+  /// `by` replaced the value.
+  void replace(const std::string& place, const std::string& value, const std::string& what, const std::string& by);
+  /// "FILE: PLACE and 3 more: VALUE is left out: must be a number".
+  std::vector<std::string> warnings(const std::string& file) const;
+
+ private:
+  void note(const std::string& place, const std::string& value, const std::string& what);
+  struct Kind {
+    std::string place, value, what;
+    std::size_t count = 0;
+  };
+  std::map<std::string, Kind> kinds_;
+};
+
 /// Checks the type of every property of glTF 2.0 that is read later, and that required properties exist. Whole numbers
-/// that are written with a fraction (3.0) become integers. Throws InputError that names the place.
-void check_types(Json& document, const std::string& file);
+/// that are written with a fraction (3.0) become integers. A property that glTF does not require and without which
+/// other data keep their meaning is left out if its type is wrong; likewise a primitive, an animation or a channel.
+/// Throws InputError that names the place for any other fault.
+void check_types(Json& document, const std::string& file, LeftOut& left_out);
+
+/// Leaves out every null inside the extensions that prune() has kept: tinygltf drops them silently.
+void leave_out_nulls(Json& document, LeftOut& left_out);
+
+/// Replaces what a camera needs and does not have: type, angle of view. Call after check_types().
+void mend_cameras(Json& document, LeftOut& left_out);
+/// A lamp of an unknown type becomes dark; a spot without a cone gets glTF's. Call after check_types().
+void mend_lights(Json& document, LeftOut& left_out);
 
 /// Checks the properties of an extension's object at `place` likewise: KHR_draco_mesh_compression of a primitive, EXT_
 /// or KHR_meshopt_compression of a bufferView, EXT_texture_webp of a texture.

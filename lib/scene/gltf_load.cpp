@@ -87,6 +87,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   Import import{model, scene, &gated, &options, kGrowth * gated.byte_count + kSmallScene};
   check_accessors(import);
   import_nodes(import);
+  leave_out_hidden(import, options.animation);
   for (auto& [source, extras] : gated.node_extras)
     if (const int node = import.node_from_source[source]; node >= 0)
       scene.nodes[std::size_t(node)].extras = std::move(extras);

@@ -31,10 +31,19 @@ float limited(Import& import, double value, double lower, double upper, const st
 Rgb limited_colour(Import& import, const std::vector<double>& values, Rgb fallback, double upper,
                    const std::string& place) {
   if (values.empty()) return fallback;
-  if (values.size() < 3) import.fail(place, "must have 3 numbers");
+  if (values.size() < 3) {
+    import.mend(place, "a colour of fewer than 3 numbers is left out", 1);
+    return fallback;
+  }
   Rgb colour;
   for (int c = 0; c < 3; ++c) colour[c] = limited(import, values[std::size_t(c)], 0, upper, place);
   return colour;
+}
+
+/// Notes a colour above 1, which glTF does not have; it is used as it is, since older exporters write bright light so.
+void note_bright(Import& import, const std::vector<double>& values, const std::string& place) {
+  if (std::ranges::any_of(values, [](double v) { return v > 1; }))
+    import.mend(place, "a colour above 1, which glTF does not allow, is taken as it is", 1);
 }
 
 void ignore_texture(const ExtensionReader& reader, const char* key) {
@@ -65,7 +74,7 @@ std::vector<double> numbers_of(Import& import, const tinygltf::Material& source,
     const auto extension = source.extensions.find(at.extension);
     if (extension == source.extensions.end()) return {};
     const std::string object = place + ".extensions." + at.extension;
-    if (!extension->second.IsObject()) import.fail(object, "is not an object");
+    if (!extension->second.IsObject()) return {};  // the gate has left it out
     if (property.role == PropertyRole::presence) return {1};
     if (!extension->second.Has(at.key)) return {};
     const ExtensionReader reader{import, extension->second, object};
@@ -77,7 +86,16 @@ std::vector<double> numbers_of(Import& import, const tinygltf::Material& source,
   if (found == values.end()) return {};
   if (property.components() == 1)
     return {found->second.has_number_value ? found->second.number_value : double(found->second.bool_value)};
-  if (found->second.number_array.size() < 3) import.fail(place + at.dotted(), "must have 3 numbers");
+  if (found->second.number_array.size() < property.components()) {
+    const std::size_t count = found->second.number_array.size();
+    const bool colour = count == 3 && property.role == PropertyRole::colour_and_alpha;
+    import.mend(place + at.dotted(),
+                colour ? "a colour without alpha gets alpha 1"
+                       : std::to_string(count) + " numbers where " + std::to_string(property.components()) +
+                             " are needed are left out",
+                1);
+    if (!colour) return {};
+  }
   return found->second.number_array;
 }
 
@@ -85,6 +103,7 @@ std::vector<double> numbers_of(Import& import, const tinygltf::Material& source,
 void check_numbers(Import& import, const MaterialProperty& property, const std::vector<double>& numbers,
                    const std::string& place) {
   const std::string at = place + PropertyPlace(property.pointer).dotted();
+  if (property.role == PropertyRole::emission_colour) note_bright(import, numbers, at);
   for (const double number : numbers)
     if (!(property.role == PropertyRole::value_or_zero && number == 0))
       limited(import, number, property.lower, property.upper, at);
@@ -104,7 +123,8 @@ void read_alpha_mode(Import& import, const tinygltf::Material& source, const std
   if (source.alphaMode == "MASK") material.alpha_mode = Material::Alpha::mask;
   else if (source.alphaMode == "BLEND") material.alpha_mode = Material::Alpha::blend;
   else if (source.alphaMode != "OPAQUE")
-    import.fail(place + ".alphaMode", "\"" + one_line(source.alphaMode, 40) + "\" is not OPAQUE, MASK or BLEND");
+    import.mend(place + ".alphaMode",
+                "\"" + one_line(source.alphaMode, 40) + "\" is not OPAQUE, MASK or BLEND; it counts as OPAQUE", 1);
 }
 
 /// The reference to a texture of the core specification, by its key.
@@ -151,7 +171,8 @@ Material read_material(Import& import, std::size_t index, ColorFactors& emission
   finish_emission(emission, material);
   if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
   if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
-  const MaterialTextures textures = read_textures(import, source, place);
+  MaterialTextures textures = read_textures(import, source, place);
+  read_specular_glossiness(import, source, place, material, textures);
   if (textures.any()) material.textures = textures;
   ignore_textures(import, source, place);
   return material;
@@ -166,6 +187,7 @@ PunctualLight read_light(Import& import, std::size_t index) {
   else if (source.type == "spot") light.kind = PunctualLight::Kind::spot;
   else if (source.type == "directional") light.kind = PunctualLight::Kind::directional;
   else import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
+  note_bright(import, source.color, place + ".color");
   light.intensity = limited_colour(import, source.color, Rgb{1.0f}, kNoUpper, place + ".color");
   light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
@@ -178,7 +200,7 @@ PunctualLight read_light(Import& import, std::size_t index) {
         std::min(limited(import, source.spot.innerConeAngle, 0, outer, place + ".spot.innerConeAngle"),
                  float(outer * kSharpestSpot));
   }
-  if (source.range > 0) import.ignore("range of lights (light follows the inverse square)");
+  if (source.range != 0) import.ignore("range of lights (light follows the inverse square)");
   return light;
 }
 
@@ -187,18 +209,12 @@ Camera read_camera(Import& import, std::size_t index) {
   const std::string place = place_of("cameras", index, source.name);
   Camera camera;
   camera.name = source.name;
-  if (source.type == "perspective") {
+  if (source.type == "perspective") {  // mend_cameras() has checked the type and the angle
     camera.kind = Camera::Kind::perspective;
     camera.yfov_rad = source.perspective.yfov;
-    if (!(camera.yfov_rad > 0 && camera.yfov_rad < std::numbers::pi))
-      import.fail(place + ".perspective.yfov", "must lie between 0 and pi");
-  } else if (source.type == "orthographic") {
+  } else {
     camera.kind = Camera::Kind::orthographic;
     camera.ymag_m = source.orthographic.ymag;
-    if (!(camera.ymag_m > 0 && std::isfinite(camera.ymag_m)))
-      import.fail(place + ".orthographic.ymag", "must be above 0");
-  } else {
-    import.fail(place + ".type", "\"" + source.type + "\" is not perspective or orthographic");
   }
   if (const auto shift = import.gated->lens_shifts.find(index); shift != import.gated->lens_shifts.end())
     camera.lens_shift = shift->second;

@@ -64,9 +64,9 @@ struct ExtensionReader {
   const tinygltf::Value& object;
   std::string place;  ///< of the object in the file, for messages
 
-  /// A finite number; `fallback` if the key is missing. Throws InputError for anything else.
+  /// A finite number; `fallback` if the key is missing, and with a warning for anything else.
   double number(const char* key, double fallback) const;
-  /// An array of `count` finite numbers; empty if the key is missing. Throws InputError for anything else.
+  /// An array of `count` finite numbers; empty if the key is missing, and with a warning for anything else.
   std::vector<double> numbers(const char* key, std::size_t count) const;
 };
 
@@ -81,11 +81,21 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
 /// Reads a reference to a texture from a textureInfo inside an extension.
 Texture read_texture(Import& import, const tinygltf::Value& info, const std::string& place);
 
+/// Reads KHR_materials_pbrSpecularGlossiness, if the material has it, over its metallic-roughness properties and
+/// textures (gltf_specular_glossiness.cpp), with a warning that says what is approximated.
+void read_specular_glossiness(Import& import, const tinygltf::Material& source, const std::string& place,
+                              Material& material, MaterialTextures& textures);
+
+/// True if the animation plays: if it is named `only`, or `only` is empty (GltfOptions::animation).
+bool is_played(const tinygltf::Model& model, std::size_t animation, const std::string& only);
+
 /// Number of morph targets of a mesh; glTF requires the same number for all its primitives.
 std::size_t target_count(const tinygltf::Mesh& mesh);
 
 // The steps of load_gltf, in this order.
-void import_nodes(Import& import);        ///< gltf_nodes.cpp: the default scene's nodes, parents first
+void import_nodes(Import& import);  ///< gltf_nodes.cpp: the default scene's nodes, parents first
+/// gltf_nodes.cpp: leaves out meshes and lights of nodes that no frame shows (KHR_node_visibility).
+void leave_out_hidden(Import& import, const std::string& only);
 void import_materials(Import& import);    ///< gltf_material.cpp
 void import_lights(Import& import);       ///< gltf_material.cpp: KHR_lights_punctual
 void import_cameras(Import& import);      ///< gltf_material.cpp

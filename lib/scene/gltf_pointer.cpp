@@ -26,6 +26,7 @@ constexpr std::array kProperties{Property{kNodes, "/translation", Path::translat
                                  Property{kNodes, "/rotation", Path::rotation},
                                  Property{kNodes, "/scale", Path::scale},
                                  Property{kNodes, "/weights", Path::weights},
+                                 Property{kNodes, "/extensions/KHR_node_visibility/visible", Path::visible},
                                  Property{kLights, "/color", Path::light_color},
                                  Property{kLights, "/intensity", Path::light_intensity},
                                  Property{kLights, "/spot/innerConeAngle", Path::inner_cone},

@@ -109,6 +109,12 @@ bool Sharing::instanced(const Primitive& primitive, const Affine& world_from_pri
          near_enough(found->second, world_from_primitive);
 }
 
+void shrink(Surface& surface, Vec3 place) {
+  surface.positions = std::vector<Vec3>(surface.primitive->positions.size(), place);
+  surface.normals = {};
+  surface.tangents = {};
+}
+
 std::vector<Affine> places(const Node& node, const Affine& world_from_node) {
   if (node.instances.empty()) return {world_from_node};
   std::vector<Affine> places;
@@ -120,9 +126,10 @@ std::vector<Affine> places(const Node& node, const Affine& world_from_node) {
 std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator, const Sharing& sharing,
                                     const Segment& segment, const NodesAtTime& nodes, bool moving) {
   std::vector<Surface> surfaces;
+  const std::vector<std::uint8_t> seen = animator.seen(nodes.time_s);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    if (node.mesh < 0 || (segment.node_moves[n] != 0) != moving) continue;
+    if (node.mesh < 0 || segment.hides(std::uint32_t(n)) || (segment.node_moves[n] != 0) != moving) continue;
     const bool deforming = deforms(scene, node);
     const Pose pose = deforming ? animator.pose(n, nodes.time_s, nodes.world_from_node) : Pose{};
     for (const Affine& place : places(node, nodes.world_from_node[n])) {
@@ -146,6 +153,7 @@ std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator
           surface.positions = place_points(primitive.positions, scene_from_node);
           surface.normals = place_normals(primitive.normals, scene_from_node);
         }
+        if (!seen[n]) shrink(surface, surface.position(0));
         check_range(scene, n, surface, sharing);
         surfaces.push_back(std::move(surface));
       }

@@ -34,6 +34,9 @@ class Sharing {
   std::unordered_map<const Primitive*, Box3d> box_;  ///< of the primitives that are instanced
 };
 
+/// Moves all vertices to one place. No ray hits a surface without area, and it emits nothing.
+void shrink(Surface& surface, Vec3 place);
+
 /// World transforms of all occurrences of the node's mesh: one, unless EXT_mesh_gpu_instancing gives more.
 std::vector<Affine> places(const Node& node, const Affine& world_from_node);
 
@@ -43,8 +46,9 @@ struct NodesAtTime {
   const std::vector<Affine>& world_from_node;
 };
 
-/// Surfaces of the nodes that move in the segment, or of all other nodes, in node order. Throws InputError if vertices
-/// lie outside kMaxCoordinate.
+/// Surfaces of the nodes that move in the segment, or of all other nodes, in node order. Nodes that the segment hides
+/// have none; where another node is hidden at this time, its surfaces are shrunk to their first vertex. Throws
+/// InputError if vertices lie outside kMaxCoordinate.
 std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator, const Sharing& sharing,
                                     const Segment& segment, const NodesAtTime& nodes, bool moving);
 

@@ -203,6 +203,11 @@ struct Node {
   std::uint32_t object = kNone;  ///< id.object of its mesh: 0, 1, 2 ... in node order
   std::string extras;            ///< the node's custom properties as JSON text; empty: none
   CameraExtras camera_extras;    ///< of a node with a camera
+  /// KHR_node_visibility at rest. A node is seen if it and all its ancestors are visible.
+  bool visible = true;
+  /// True if the node is hidden at all times: it or an ancestor is not visible at rest, and no animation shows it. The
+  /// reader leaves out its mesh and light.
+  bool never_seen = false;
 };
 
 /// One animated property: values at increasing times.
@@ -213,6 +218,7 @@ struct AnimationTrack {
     rotation,
     scale,
     weights,
+    visible,   ///< Node::visible: 0 is false; always with steps
     material,  ///< a property of a material
     // of a light
     light_color,

@@ -55,6 +55,7 @@ const char* word_of(const AnimationTrack& track) {
     case Path::rotation: return "rotation";
     case Path::scale: return "scale";
     case Path::weights: return "weights";
+    case Path::visible: return "visibility";
     case Path::material: return material_properties()[track.property].name;
     case Path::light_color: return "colour";
     case Path::light_intensity: return "intensity";
@@ -86,13 +87,31 @@ std::string reason(const Scene& scene, const Animator& animator, const Segment& 
   std::string properties;
   const Node& node = scene.nodes[n];
   for (const AnimationTrack* track : animator.tracks(n))
-    if ((node.skin < 0 || track->path == Path::weights) && differs_in(*track, segment, fps))
+    if ((node.skin < 0 || track->path >= Path::weights) && differs_in(*track, segment, fps))
       properties += (properties.empty() ? "" : ", ") + std::string(word_of(*track));
   if (!properties.empty()) return properties + " of " + name_of(node);
   if (node.skin >= 0)
     for (const int joint : scene.skins[std::size_t(node.skin)].joints)
       if (segment.node_moves[std::size_t(joint)]) return "joint " + name_of(scene.nodes[std::size_t(joint)]);
   return node.parent < 0 ? "its shape" : "parent " + name_of(scene.nodes[std::size_t(node.parent)]);
+}
+
+/// Marks the nodes that are hidden at all frames, and those that are hidden at some frames only, which move.
+void set_hidden(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
+  const std::vector<std::uint8_t> first = animator.seen(segment.first / fps);
+  segment.node_hidden.resize(first.size());
+  for (std::size_t n = 0; n < first.size(); ++n) segment.node_hidden[n] = !first[n];
+  if (!animator.anything_animated()) return;
+  for (int f = segment.first + 1; f <= segment.last; ++f) {
+    const std::vector<std::uint8_t> seen = animator.seen(f / fps);
+    for (std::size_t n = 0; n < first.size(); ++n) {
+      if (seen[n]) segment.node_hidden[n] = 0;
+      if (seen[n] != first[n]) segment.node_moves[n] = 1, segment.hides_at_times = true;
+    }
+  }
+  for (std::size_t n = 0; n < first.size(); ++n)
+    if (segment.node_hidden[n] && (scene.nodes[n].mesh >= 0 || scene.nodes[n].light >= 0) && scene.nodes[n].camera < 0)
+      segment.node_moves[n] = 0;
 }
 
 /// Marks the nodes whose state differs between two frames. A skinned mesh has the state of its joints; the transform of
@@ -144,7 +163,7 @@ void add_changes(const Scene& scene, const Animator& animator, double fps, Segme
                                                                    [&](const Primitive& p) {
                                                                      return int(p.material) == int(track->target);
                                                                    });
-      if (!has || segment.node_moves[n]) continue;
+      if (!has || segment.node_moves[n] || segment.node_hidden[n]) continue;
       segment.node_moves[n] = 1;
       segment.why_moves[n] = std::string(word_of(*track)) + " of its " + kind;
     }
@@ -164,7 +183,7 @@ void add_static_bounds(const Scene& scene, const Animator& animator, const std::
   const Sharing sharing(scene);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    if (node.mesh < 0 || segment.node_moves[n]) continue;
+    if (node.mesh < 0 || segment.node_moves[n] || segment.node_hidden[n]) continue;
     if (deforms(scene, node)) {
       const PoseBounds bounds(scene, node);
       for (const Affine& place : places(node, world[n]))
@@ -185,18 +204,23 @@ void add_moving_bounds(const Scene& scene, const Animator& animator, double fps,
   std::vector<std::pair<std::size_t, PoseBounds>> deforming;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    if (node.mesh < 0 || !segment.node_moves[n]) continue;
+    if (node.mesh < 0 || !segment.node_moves[n] || segment.node_hidden[n]) continue;
     if (deforms(scene, node)) deforming.emplace_back(n, PoseBounds(scene, node));
     else rigid.emplace_back(n, local_box(scene.meshes[std::size_t(node.mesh)]));
   }
   if (rigid.empty() && deforming.empty()) return;
   for (int f = segment.first; f <= segment.last; ++f) {
     const std::vector<Affine> world = animator.world_from_node(f / fps);
-    for (const auto& [n, box] : rigid)
+    const std::vector<std::uint8_t> seen = animator.seen(f / fps);
+    for (const auto& [n, box] : rigid) {
+      if (!seen[n]) continue;
       for (const Affine& place : places(scene.nodes[n], world[n])) add_corners(segment.world_bounds, box, place);
-    for (const auto& [n, bounds] : deforming)
+    }
+    for (const auto& [n, bounds] : deforming) {
+      if (!seen[n]) continue;
       for (const Affine& place : places(scene.nodes[n], world[n]))
         bounds.add_to(segment.world_bounds, animator.pose(n, f / fps, world), place);
+    }
   }
 }
 
@@ -228,6 +252,7 @@ Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   segment.why_moves.assign(count, "");
   const std::vector<Affine> first = animator.world_from_node(segment.first / options.fps);
   if (animator.anything_animated()) set_moves(scene, animator, first, options.fps, segment);
+  set_hidden(scene, animator, options.fps, segment);
   for (std::size_t n = 0; n < count; ++n)
     if (segment.node_moves[n]) segment.why_moves[n] = reason(scene, animator, segment, n, options.fps);
   add_changes(scene, animator, options.fps, segment);

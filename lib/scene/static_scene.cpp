@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "lib/scene/place_surfaces.h"
 #include "lib/scene/scene_hash.h"
 
 namespace tempolux {
@@ -17,13 +18,6 @@ constexpr double kTrianglesOfPiece = 4;
 /// Largest number of cells along an axis (docs/methods/dynamic.md). More cells let fewer paths be traced again; the
 /// light is the same.
 constexpr std::size_t kMostAlong = 4;
-
-/// Moves all vertices to one place. No ray hits a surface without area, and it emits nothing.
-void shrink(Surface& surface) {
-  surface.positions = std::vector<Vec3>(surface.primitive->positions.size());
-  surface.normals = {};
-  surface.tangents = {};
-}
 
 /// Widens a box by kMargin of the largest coordinate.
 Box3 widened(const Box3& box) {
@@ -60,7 +54,7 @@ std::vector<Box3> pieces_of(const Surface& surface, const Box3& box) {
 }  // namespace
 
 SceneFrame static_scene_of(SceneFrame frame) {
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) shrink(frame.surfaces[s]);
+  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) shrink(frame.surfaces[s], Vec3{});
   std::vector<PlacedLight> static_lights;
   for (PlacedLight& placed : frame.lights) {
     if (frame.segment.moves(placed.node)) placed.light.intensity = Rgb(0.0f);

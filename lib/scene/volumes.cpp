@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "formats/error.h"
+#include "lib/core/box_corners.h"
 #include "lib/core/json.h"
 #include "lib/scene/place_surfaces.h"
 #include "lib/volume/vdb_file.h"
@@ -83,7 +84,7 @@ bool leaves_folder(const std::filesystem::path& name) {
 std::vector<VolumeSource> volumes_of(const Scene& scene) {
   std::vector<VolumeSource> sources;
   for (const Node& node : scene.nodes) {
-    if (node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
+    if (node.never_seen || node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
     const Json object = Json::parse(node.extras, nullptr, false);
     if (!object.is_object() || !object.contains("vdb_pattern")) continue;
     const std::string place = node_place(scene, std::size_t(&node - scene.nodes.data()));
@@ -107,10 +108,11 @@ std::vector<VolumeSource> volumes_of(const Scene& scene) {
 }
 
 std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
-                               std::uint64_t max_memory, VdbSeries& series) {
+                               std::uint64_t max_memory, VdbSeries& series, std::vector<std::string>& notes) {
   std::vector<Medium> media;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const VdbVolume volume = series.read({files[i], sources[i].grid}, max_memory);
+    if (!volume.note.empty()) notes.push_back(files[i] + ": " + volume.note);
     if (volume.voxels->empty()) continue;  // the sequence has not begun at this frame
     Affine scene_from_index = sources[i].z_up ? kYUp * volume.world_from_index : volume.world_from_index;
     scene_from_index.translation -= origin;
@@ -132,6 +134,78 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
                        "'s sigma_t");
   }
   return media;
+}
+
+namespace {
+
+/// Least height of a volume in a picture, as a share of the picture's height.
+constexpr double kLeastInPicture = 1.0 / 500;
+/// Width of the widest picture, in heights.
+constexpr double kWidest = 4;
+
+/// Smallest distance between two boxes, m; 0 if they meet.
+double gap_between(const Box3d& a, const Box3d& b) {
+  Vec3d gap{};
+  for (int axis = 0; axis < 3; ++axis)
+    gap[axis] = std::max({0.0, a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]});
+  return length(gap);
+}
+
+/// How a camera may see a box.
+struct Sight {
+  bool in_picture = false;
+  double height = 0;  ///< in heights of the picture, at most
+};
+
+/// Conservative: the box counts as in the picture unless all its corners lie beyond the same edge.
+Sight sight_of(const Box3d& box, const PlacedCamera& placed) {
+  const Camera& camera = placed.camera;
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  const double half = perspective ? std::tan(camera.yfov_rad / 2) : camera.ymag_m;
+  std::array<int, 5> beyond{};
+  double nearest = INFINITY;
+  const Affine camera_from_scene = inverse(placed.scene_from_camera);
+  for_corners(camera_from_scene, box, [&](Vec3d p) {
+    const double depth = -p.z, edge = perspective ? half * depth : half;
+    const auto [shift_x, shift_y] = camera.lens_shift;
+    const double x = p.x - 2 * edge * shift_x, y = p.y - 2 * edge * shift_y;
+    beyond[0] += depth <= 0;
+    beyond[1] += x > kWidest * edge, beyond[2] += -x > kWidest * edge;
+    beyond[3] += y > edge, beyond[4] += -y > edge;
+    nearest = std::min(nearest, depth);
+  });
+  Sight sight;
+  sight.in_picture = std::ranges::none_of(beyond, [](int corners) { return corners == 8; });
+  const double edge = perspective ? half * nearest : half;
+  sight.height = edge > 0 ? box.diagonal() / (2 * edge) : 1;
+  return sight;
+}
+
+std::string text_of(const Box3d& box) {
+  const Vec3d centre = box.centre(), size = box.upper - box.lower;
+  char text[200];
+  std::snprintf(text, sizeof text, "%.3g x %.3g x %.3g m around (%.3g, %.3g, %.3g)", size.x, size.y, size.z, centre.x,
+                centre.y, centre.z);
+  return text;
+}
+
+}  // namespace
+
+std::string why_unseen(const Box3d& volume, const Box3d& geometry, std::span<const PlacedCamera> cameras,
+                       Vec3d origin) {
+  if (volume.empty() || geometry.empty()) return {};
+  bool in_picture = cameras.empty();
+  double height = cameras.empty() ? 1 : 0;
+  for (const PlacedCamera& camera : cameras) {
+    const Sight sight = sight_of({volume.lower - origin, volume.upper - origin}, camera);
+    in_picture |= sight.in_picture;
+    height = std::max(height, sight.height);
+  }
+  const double gap = gap_between(volume, geometry);
+  const bool away = gap > geometry.diagonal() || (!in_picture && gap > volume.diagonal());
+  if (!away && height >= kLeastInPicture) return {};
+  return std::string(away ? "nothing sees it: its voxels lie outside of the scene" : "it is smaller than a pixel") +
+         ": they fill " + text_of(volume) + ", the scene " + text_of(geometry) + "; is its transform in metres?";
 }
 
 }  // namespace tempolux

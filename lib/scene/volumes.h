@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lib/scene/at_frame.h"
 #include "lib/scene/scene.h"
 #include "lib/volume/medium.h"
 #include "lib/volume/vdb_file.h"
@@ -38,9 +39,19 @@ std::vector<VolumeSource> volumes_of(const Scene& scene);
 
 /// Reads files[i] for sources[i] and places the media in scene space (world - origin). Files without voxels and media
 /// of no extinction give no medium. `max_memory` limits the bytes of the reading process; 0 derives the limit from the
-/// file's size. `series` reads the next files ahead. Throws InputError as read_vdb() does, and for a medium outside the
+/// file's size. `series` reads the next files ahead. `notes` gets a line for each file in which values were replaced.
+/// Throws InputError as read_vdb() does, and for a medium outside the
 /// range of coordinates or of float32.
 std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
-                               std::uint64_t max_memory, VdbSeries& series);
+                               std::uint64_t max_memory, VdbSeries& series, std::vector<std::string>& notes);
+
+/// Why nothing sees a volume, with the place and size of both boxes, for a warning; "": something may see it. Nothing
+/// sees a volume that
+/// - is farther from the box of the scene's geometry than the diagonal of this box;
+/// - or is farther from it than the volume's own diagonal, and outside of all cameras' pictures;
+/// - or is below a five hundredth of the picture's height for every camera.
+/// Such a volume's transform is usually in centimetres or inches. `volume` and `geometry` are in world space, m, and
+/// cameras in scene space, whose origin in world space is `origin`. Empty boxes give "".
+std::string why_unseen(const Box3d& volume, const Box3d& geometry, std::span<const PlacedCamera> cameras, Vec3d origin);
 
 }  // namespace tempolux

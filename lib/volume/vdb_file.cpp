@@ -77,6 +77,8 @@ VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   VdbVolume volume;
   volume.grid.resize(std::min(head.name_size, printed.left()));
   printed.take(volume.grid.data(), volume.grid.size());
+  volume.note.resize(std::min(head.note_size, printed.left()));
+  printed.take(volume.note.data(), volume.note.size());
   for (std::size_t r = 0; r < 3; ++r) {
     const double* const row = head.world_from_index.data() + 4 * r;
     volume.world_from_index.row[r] = {row[0], row[1], row[2]};

@@ -18,15 +18,18 @@ struct VdbVolume {
   std::string grid;                         ///< name in the file
   std::shared_ptr<const VoxelGrid> voxels;  ///< may be empty, since a sequence may begin before its smoke
   Affine world_from_index;                  ///< m
+  std::string note;                         ///< which values were replaced; "": none
 };
 
 /// Reads the grid named `grid` of a .vdb file ("NAME:1" is the second of that name). If `grid` is empty, reads the grid
-/// `density`, or else the only grid of floats or doubles. A child process (tempolux-vdb) with limited memory and time
-/// reads the file, so that a hostile file ends in a message. `max_memory` limits the bytes of that process; 0 means
-/// 400 MB plus 64 times the file.
+/// `density`, or else the only grid of numbers: floats or doubles, or if there are none, integers. A child process
+/// (tempolux-vdb) with limited memory and time reads the file, so that a hostile file ends in a message. `max_memory`
+/// limits the bytes of that process; 0 means 400 MB plus 64 times the file.
+///
+/// Values that are negative, NaN or infinite count as 0, with a note, if they are few.
 ///
 /// Throws InputError "FILE: what; remedy" for a file that cannot be read, a grid that is no density (level set, points,
-/// vectors), NaN, infinity, negative values, a background other than 0, or a transform that is not affine.
+/// vectors), more than a hundredth of invalid values, a background other than 0, or a transform that is not affine.
 VdbVolume read_vdb(const std::string& path, const std::string& grid, std::uint64_t max_memory);
 
 /// A grid of a file.

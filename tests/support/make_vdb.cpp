@@ -3,10 +3,10 @@
 //     make-vdb OUT.vdb NX NY NZ VOXEL X Y Z [NAME [CLASS [BACKGROUND [TYPE [FIRST [M]]]]]]  < VALUES
 //
 // VALUES: NX NY NZ numbers of float32, z fastest; zeros are left out. X, Y, Z: centre of the first voxel, m. VOXEL:
-// edge of a voxel, m. CLASS: fog, level-set or unknown. TYPE: float, half, double or vector; or tiles, which stores
-// uniform blocks as one value. FIRST: x, y and z of the first voxel in index space (0). M: three rows of three numbers
-// in place of VOXEL, the metres along each world axis for a step along each axis of index space. If OUT.vdb exists,
-// the grid is added to it.
+// edge of a voxel, m. CLASS: fog, level-set or unknown. TYPE: float, half, double, int32, int64, bool or vector; or
+// tiles, which stores uniform blocks as one value. FIRST: x, y and z of the first voxel in index space (0). M: three
+// rows of three numbers in place of VOXEL, the metres along each world axis for a step along each axis of index space.
+// If OUT.vdb exists, the grid is added to it.
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -52,6 +52,9 @@ int main(int argc, char** argv) {
   openvdb::GridBase::Ptr grid;
   if (type == "double") grid = make<openvdb::DoubleGrid>(values, size, background, first);
   else if (type == "vector") grid = make<openvdb::Vec3SGrid>(values, size, openvdb::Vec3f(0.0f), first);
+  else if (type == "int32") grid = make<openvdb::Int32Grid>(values, size, 0, first);
+  else if (type == "int64") grid = make<openvdb::Int64Grid>(values, size, 0, first);
+  else if (type == "bool") grid = make<openvdb::BoolGrid>(values, size, false, first);
   else grid = make<openvdb::FloatGrid>(values, size, float(background), first);
   grid->setSaveFloatAsHalf(type == "half");
   grid->setName(name);

@@ -69,6 +69,7 @@ void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool adds_media = read_volumes && volumes_->any() && scene_.has_distant_light();
   if (inside && (!adds_media || bounds_of_ == frame)) return;
   Segment segment = segment_of(scene_, frame, time_);
+  geometry_ = segment.world_bounds;
   bounds_of_.reset();
   if (adds_media) {
     const auto add = [&](const Box3d& box) {
@@ -98,6 +99,7 @@ SceneFrame SceneInput::at(int frame, bool asked) {
   SceneFrame at = segment_->at(frame);
   if (asked && volumes_->any()) {
     at.media = volumes_->at(frame, at.origin);
+    volumes_->look_for(at, geometry_);
     at.hashes.media = at.media ? at.media->hash() : VolumeInput::hash({});
   }
   return at;

@@ -51,6 +51,7 @@ class SceneInput {
   Scene scene_;
   TimeOptions time_;
   std::optional<VolumeInput> volumes_;
+  Box3d geometry_;                ///< of the segment's triangles, without media; world space, m
   std::optional<int> bounds_of_;  ///< frame whose media the segment's bounds enclose; empty: none yet
   std::unique_ptr<SegmentScene> segment_;
   std::optional<EmissionTable> emission_;

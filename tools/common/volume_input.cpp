@@ -141,7 +141,30 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
   }
   for (const std::string& file : files)
     if (std::ranges::find(files_, file) == files_.end()) files_.push_back(file);
-  return read_media(sources_, files, origin, tool_.common().max_memory_bytes, *series_);
+  std::vector<std::string> notes;
+  std::vector<Medium> media = read_media(sources_, files, origin, tool_.common().max_memory_bytes, *series_, notes);
+  for (const std::string& note : notes) warn_once(note.substr(note.find(": grid ")), note);
+  return media;
+}
+
+void VolumeInput::warn_once(const std::string& kind, const std::string& warning) {
+  if (warned_.insert(kind).second) tool_.warn(warning);
+}
+
+void VolumeInput::look_for(const SceneFrame& frame, const Box3d& geometry) {
+  if (!frame.media) return;
+  std::vector<PlacedCamera> cameras;
+  for (std::size_t n = 0; n < frame.scene->nodes.size(); ++n) {
+    if (frame.scene->nodes[n].camera < 0) continue;
+    try {
+      cameras.push_back(frame.camera(int(n)));
+    } catch (const InputError&) { continue; }  // a camera without a direction
+  }
+  Box3d box;
+  for (const Medium& medium : frame.media->all())
+    box.add({medium.bounds().lower + frame.origin, medium.bounds().upper + frame.origin});
+  if (const std::string why = why_unseen(box, geometry, cameras, frame.origin); !why.empty())
+    warn_once("unseen", sources_.front().place + ": the smoke of frame " + std::to_string(frame.frame) + ": " + why);
 }
 
 std::string VolumeInput::hash(const std::vector<Medium>& media) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ class VolumeInput {
   std::shared_ptr<const Media> at(int frame, Vec3d origin);
   /// The same media without majorants.
   std::vector<Medium> read(int frame, Vec3d origin);
+  /// Warns, at most once, if nothing sees the media of a frame, as volumes.h defines. `geometry` is the box of the
+  /// scene's triangles, world space, m.
+  void look_for(const SceneFrame& frame, const Box3d& geometry);
   /// All files read so far.
   const std::vector<std::string>& files() const { return files_; }
   /// Majorants that are valid for these frames; world space.
@@ -57,6 +61,9 @@ class VolumeInput {
     Vec3d origin;
     std::shared_ptr<const Media> media;
   };
+  /// Warns unless a warning of this kind was given.
+  void warn_once(const std::string& kind, const std::string& warning);
+  std::set<std::string> warned_;
   std::map<int, Kept> kept_;  ///< results of read(), up to kMostKept bytes
   std::size_t kept_bytes_ = 0;
   std::optional<FrozenMajorants> majorants_;

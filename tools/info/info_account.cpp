@@ -7,6 +7,7 @@
 #include "lib/core/formatted.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/object_names.h"
+#include "lib/audit/advice.h"
 #include "lib/audit/audit.h"
 #include "tools/info/info_facts.h"
 
@@ -15,10 +16,12 @@ namespace {
 
 struct AuditedLayer {
   const char *name, *in_words;
+  Layer layer;
 };
 /// Direct light is left out: frames sample it without bias, so its audit only tests the audit itself.
-constexpr std::array<AuditedLayer, 3> kLayers{
-    {{"caustic", "caustic light"}, {"indirect", "indirect light"}, {"specular", "light in mirrors and glass"}}};
+constexpr std::array<AuditedLayer, 3> kLayers{{{"caustic", "caustic light", Layer::caustic},
+                                               {"indirect", "indirect light", Layer::indirect},
+                                               {"specular", "light in mirrors and glass", Layer::specular}}};
 constexpr std::size_t kMatte = 2;  // the first layers are light on surfaces that the camera sees
 
 /// Sums of one layer over the frames.
@@ -102,8 +105,7 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     account.line += (account.line.empty() ? "audit: " : ", ") + text;
     if (sum.biased())
       account.warnings.push_back(std::string(kLayers[l].in_words) + " is off by " + percent(sum.mean(), sum.error()) +
-                                 " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
-                                 "another INDIRECT mend it");
+                                 " of the picture; " + advice_on_bias(kLayers[l].layer, AdviceFor::make));
   }
   if (!unknown.empty())
     account.line +=

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lib/audit/advice.h"
 #include "lib/core/formatted.h"
 
 namespace tempolux::tools {
@@ -81,6 +82,13 @@ void add(const std::vector<AuditEntry>& audit, std::map<std::string, double>& nu
   }
 }
 
+Layer noisiest(const FrameNoise& noise) {
+  std::size_t most = 0;
+  for (std::size_t l = 1; l < kLayerCount; ++l)
+    if (noise.layer[l].codes > noise.layer[most].codes) most = l;
+  return Layer(most);
+}
+
 }  // namespace
 
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit) {
@@ -105,9 +113,7 @@ void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector
     const std::string line = "audit: " + audit_line(entry, audit, object_names);
     tool.say(line);
     if (is_biased(entry) && entry.layer != Layer::direct)
-      tool.warn(line +
-                "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths "
-                "(no files of light) mend it");
+      tool.warn(line + "; " + advice_on_bias(entry.layer, AdviceFor::tools));
   }
   if (!rendered.noise.known()) return;
   tool.say(noise_line(rendered));
@@ -119,8 +125,9 @@ void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector
               " of them by records and photons; give these more rays and paths (irradcache-build --rays, photon-trace "
               "--photons)");
   else
-    tool.warn(left + "and " + number(100 * rendered.at_limit) + " % of the pixels are at the limit of " +
-              std::to_string(asked.adaptive_limit) + " samples; give files of light (--points, --irradcache)");
+    tool.warn(left + "most in layer " + kLayerNames[std::size_t(noisiest(rendered.noise))] + ", and " +
+              number(100 * rendered.at_limit) + " % of the pixels are at the limit of " +
+              std::to_string(asked.adaptive_limit) + " samples; " + advice_on_samples(noisiest(rendered.noise)));
 }
 
 }  // namespace tempolux::tools

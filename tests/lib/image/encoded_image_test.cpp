@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string_view>
 
 #include "formats/error.h"
@@ -48,6 +49,17 @@ constexpr std::string_view kProgressive =
     "\x00\x00\x10\xff\xda\x00\x08\x01\x02\x01\x01\x3f\x10\x3f\xff\xc4\x00\x14\x10\x01\x00\x00\x00\x00\x00\x00\x00\x00"
     "\x00\x00\x00\x00\x00\x00\x00\x10\xff\xda\x00\x08\x01\x01\x00\x01\x3f\x10\x3f\xff\xd9"sv;
 
+// 8 x 8 pixels of four inks with Adobe's marker: codes (200, 100, 50, 204), which are 255 - ink; quality 90, by
+// libjpeg.
+constexpr std::string_view kInks =
+    "\xff\xd8\xff\xee\x00\x0e\x41\x64\x6f\x62\x65\x00\x64\x00\x00\x00\x00\x00\xff\xdb\x00\x43\x00\x03\x02\x02\x03\x02"
+    "\x02\x03\x03\x03\x03\x04\x03\x03\x04\x05\x08\x05\x05\x04\x04\x05\x0a\x07\x07\x06\x08\x0c\x0a\x0c\x0c\x0b\x0a\x0b"
+    "\x0b\x0d\x0e\x12\x10\x0d\x0e\x11\x0e\x0b\x0b\x10\x16\x10\x11\x13\x14\x15\x15\x15\x0c\x0f\x17\x18\x16\x14\x18\x12"
+    "\x14\x15\x14\xff\xc0\x00\x14\x08\x00\x08\x00\x08\x04\x43\x11\x00\x4d\x11\x00\x59\x11\x00\x4b\x11\x00\xff\xc4\x00"
+    "\x15\x00\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x08\x07\xff\xc4\x00\x14\x10\x01\x00\x00"
+    "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xff\xda\x00\x0e\x04\x43\x00\x4d\x00\x59\x00\x4b\x00\x00"
+    "\x3f\x00\x60\x26\x81\x79\x96\xff\xd9"sv;
+
 EncodedImage encoded(std::string_view bytes) { return {"x.img", {bytes.begin(), bytes.end()}, 0, 0, ""}; }
 std::string error_of(std::string_view bytes, std::uint64_t max_pixels = 1 << 20) {
   return message_of<InputError>([&] { decode_image(encoded(bytes), max_pixels); });
@@ -64,6 +76,23 @@ TEST(EncodedImage, SizesComeFromTheHeader) {
   EXPECT_EQ(png.format, ImageHeader::Format::png);
   EXPECT_EQ(png.width, 3);
   EXPECT_EQ(png.height, 2);
+}
+
+// A colour is (1 - ink) (1 - black). Quality 90 quantises each channel in steps of at most 3 codes. Seen to fail:
+// refused.
+TEST(EncodedImage, FourInksArePrinted) {
+  std::string plain(kInks);  // without Adobe's marker the codes are the inks themselves
+  const std::size_t marker = plain.find("\xff\xee");
+  plain.erase(marker, 16);
+  for (const auto& [bytes, expected] :
+       {std::pair{std::string(kInks), std::array{160, 80, 40}}, std::pair{plain, std::array{11, 31, 41}}}) {
+    EXPECT_TRUE(read_image_header(encoded(bytes).bytes, "x").four_inks);
+    const CodedPixels pixels = decode_image(encoded(bytes), 1 << 20);
+    ASSERT_EQ(pixels.channels, 3);
+    ASSERT_EQ(pixels.bytes.size(), 3u * 64);
+    for (std::size_t i = 0; i < pixels.bytes.size(); ++i) EXPECT_NEAR(pixels.bytes[i], expected[i % 3], 3);
+  }
+  EXPECT_FALSE(read_image_header(encoded(kJpeg).bytes, "x").four_inks);
 }
 
 TEST(EncodedImage, JpegIsDecoded) {

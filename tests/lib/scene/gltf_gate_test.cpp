@@ -220,9 +220,6 @@ TEST(GltfGate, OtherVersionsAreRefused) {
 
 TEST(GltfGate, WrongTypesAreNamedWhereTheyAre) {
   GltfMaker maker = one_triangle();
-  maker.json["nodes"][0]["translation"] = {1, "2", 3};
-  EXPECT_CONTAINS(error_of(maker), "nodes[0].translation: must be an array of numbers");
-  maker = one_triangle();
   maker.json["accessors"][0]["count"] = -3;
   EXPECT_CONTAINS(error_of(maker), "accessors[0].count: must be a whole number");
   maker = one_triangle();

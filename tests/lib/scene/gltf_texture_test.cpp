@@ -80,15 +80,6 @@ TEST(GltfTexture, WhatCannotBeUsedIsRefused) {
     const std::string error = load_error(write_file("bad.gltf", textured(c.image).text()));
     EXPECT_CONTAINS(error, c.part);
   }
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", textured({{"uri", data_uri(png)}}, {{"index", 7}}).text())),
-                  "texture 7 does not exist");
-  GltfMaker maker = textured({{"uri", data_uri(png)}});
-  maker.json["textures"][0]["source"] = 3;
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "image 3 does not exist");
-  maker.json["textures"][0] = {{"source", 0}, {"sampler", 0}};
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "sampler 0 does not exist");
-  maker.json["samplers"] = {{{"wrapS", 1}}};
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "samplers[0].wrapS");
 }
 
 TEST(GltfTexture, SamplersAndTransforms) {
@@ -171,7 +162,7 @@ TEST(GltfTexture, TangentsAreReadWithANormalMapOnlyAndChecked) {
   GltfMaker few = with_tangents(false, 1), zero = few;
   Json& attributes = few.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TANGENT"] = few.add_vec4({0, 1, 0, 1});
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", few.text())), "not as many tangents as positions");
+  EXPECT_TRUE(has_warning(few.load(), "TANGENT: 1 tangents for 4 positions are left out"));
   attributes["TANGENT"] = few.add_vec3({0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
   EXPECT_CONTAINS(load_error(write_file("bad.gltf", few.text())), "TANGENT");
   zero.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = zero.add_vec4(std::vector<float>(16, 0));
@@ -199,7 +190,7 @@ TEST(GltfTexture, AlphaModesAndUnlit) {
   EXPECT_TRUE(material.unlit);
   EXPECT_FALSE(material.emissive());
   maker.json["materials"][0]["alphaMode"] = "GLASS";
-  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "is not OPAQUE, MASK or BLEND");
+  EXPECT_TRUE(has_warning(maker.load(), "is not OPAQUE, MASK or BLEND"));
 }
 
 TEST(GltfTexture, TheMaterialsHashKnowsTheBytesAndHowTheyAreLaidOn) {

@@ -73,7 +73,9 @@ TEST(Morph, WeightsAtRestAreTheNodesElseTheMeshs) {
   maker.json["nodes"][0]["weights"] = {0, 0.25};
   EXPECT_EQ(frame_of(maker.load(), 0).surfaces[0].position(2), (Vec3{1.5f, 1, 0}));
   maker.json["nodes"][0]["weights"] = {1};
-  EXPECT_CONTAINS(load_error(write_file("w.gltf", maker.text())), "1 weights for 2 morph targets");
+  const Scene few = maker.load();
+  EXPECT_TRUE(has_warning(few, "nodes[0].weights: 1 weights for 2 morph targets are left out"));
+  EXPECT_EQ(frame_of(few, 0).surfaces[0].position(2), (Vec3{1, 1, 0}));
 }
 
 TEST(Morph, MovesOnlyWhereItsWeightsDiffer) {
@@ -184,7 +186,7 @@ TEST(Skin, WhatCannotBeRightIsRefused) {
   few.json["skins"][0]["joints"] = {2};
   EXPECT_CONTAINS(load_error(write_file("s.gltf", few.text())), "names joint 1, but its skin has 1");
   outside.json["nodes"][0]["skin"] = 7;
-  EXPECT_CONTAINS(load_error(write_file("s.gltf", outside.text())), "skin 7 does not exist");
+  EXPECT_TRUE(has_warning(outside.load(), "skin 7 does not exist; the mesh stays rigid"));
 }
 
 TEST(Emission, TheTableIsTheMaximumOverADeformingEmitter) {

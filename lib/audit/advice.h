@@ -1,0 +1,48 @@
+// lib/audit/advice.h -- what mends the bias or the noise of a layer of a frame. All is inline, so that tempolux-info
+// need not link the renderer.
+#pragma once
+
+#include <string>
+
+#include "lib/render/path_tracer.h"
+
+namespace tempolux {
+
+/// For whom an advice is written: options of the tools, or variables of make.
+enum class AdviceFor { tools, make };
+
+/// What mends the bias of a layer, which irradiance points, records and photons cause: "more points (POINTS=...) mend
+/// it". "" for layers that frames sample without bias.
+inline std::string advice_on_bias(Layer layer, AdviceFor reader) {
+  const bool make = reader == AdviceFor::make;
+  const std::string photons = make ? "more photons (PHOTONS)" : "more photons (photon-trace --photons)";
+  const std::string points =
+      make ? "more points (POINTS=\"--point-count N\")"
+           : "more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high)";
+  const std::string paths = make ? "INDIRECT=paths" : "paths (no files of light)";
+  switch (layer) {
+    case Layer::caustic: return photons + " mend it";
+    case Layer::indirect: return points + ", " + photons + " or " + paths + " mend it";
+    case Layer::specular:
+      return points + ", from which mirrors and glass show indirect light, or " + paths + " mend it";
+    case Layer::volume: return photons + " mend it";
+    case Layer::emission:
+    case Layer::direct: return "";
+  }
+  return "";
+}
+
+/// What lowers noise of samples that stays at the limit of samples per pixel. `layer` has the most noise.
+inline std::string advice_on_samples(Layer layer) {
+  switch (layer) {
+    case Layer::caustic: return "give photons (--photons), which find caustics";
+    case Layer::indirect: return "give files of light (--points, --irradcache)";
+    case Layer::specular: return "raise the limit, or make mirrors and glass a little rough";
+    case Layer::emission:
+    case Layer::direct:
+    case Layer::volume: return "raise the limit";
+  }
+  return "";
+}
+
+}  // namespace tempolux
