@@ -21,6 +21,7 @@ namespace {
 
 void check(const CLI::App& app, const tools::TraceOptions& options) {
   if (options.map != "static" && !options.paths.empty()) throw InputError("--paths: only with --map static");
+  if (options.output.empty() && options.paths.empty()) throw InputError("-o is required, unless --paths is given");
   if (options.map != "dynamic" && !options.static_paths.empty()) throw InputError("--static: only with --map dynamic");
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
@@ -46,12 +47,14 @@ int main(int argc, char** argv) {
          "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
       ->capture_default_str();
   tool.file_option("--importance", options.importance, tools::kImportanceHelp);
-  tool.output_option(options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
-      ->required();
+  tool.output_option(
+      options.output,
+      ".photons file, or a pattern as f.####.photons; - for standard output; only with --paths it may be "
+      "left out");
   tool.choice_option("--map", options.map, {"global", "static", "dynamic"},
                      "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "
                      "difference, for touched paths");
-  tool.output_option(options.paths, "with --map static: also write the paths that movers can touch, .paths", "--paths");
+  tool.output_option(options.paths, "with --map static: write the paths that movers can touch, .paths", "--paths");
   tool.file_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map");
   tools::add_update_options(tool, options.updating);
   tool.common_options(tools::uses_scene | tools::uses_majorants | tools::uses_seed | tools::uses_camera |

@@ -37,7 +37,6 @@ Look look_at(std::size_t pixel, int width, Vec2 within) {
 Look centre_look(std::size_t pixel, int width) { return look_at(pixel, width, {0.5f, 0.5f}); }
 
 Look edge_look(std::size_t pixel, int width, std::uint32_t k) {
-  constexpr Vec2 kWithin[kEdgeLooks] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
   Look look = look_at(pixel, width, kWithin[k]);
   look.random.emplace(mix64(pixel), k);
   return look;

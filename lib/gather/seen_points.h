@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -55,8 +56,9 @@ struct Glimpse {
 /// pixels. A pixel whose path chose one of several directions at a surface (SeenPoint::by_choice) is one, too.
 std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height);
 
-/// Number of further raster positions in an edge pixel, so that the samples of its frame are seen, too.
-inline constexpr std::uint32_t kEdgeLooks = 4;
+/// Further places in an edge pixel, in pixels, so that the samples of its frame are seen, too.
+inline constexpr Vec2 kWithin[] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
+inline constexpr std::uint32_t kEdgeLooks = std::size(kWithin);
 /// The centre of a pixel; pixel = y width + x.
 Look centre_look(std::size_t pixel, int width);
 /// Raster position number k < kEdgeLooks of an edge pixel.

@@ -13,9 +13,9 @@
 namespace tempolux {
 namespace {
 
-/// Largest radius of a record, in spacings of its class. A radius of 1.25 spacings covers a surface (place_records()
-/// puts records .8 radii apart); a class has to cover what the class before left, so the next wider one is enough.
-constexpr float kMostRadius = 1.5f;
+/// Largest radius [m] of a record of a class: the spacing of the next wider class. A class has to cover what the wider
+/// classes left open.
+float most_radius(int spacing_class) { return spacing_of(spacing_class + 1); }
 /// Cells of wanted places are this many classes narrower than the places that are tested against them.
 constexpr int kFiner = 3;
 /// Least cosine between the normal of a wanted place, which normal maps bend, and that of a surface near it.
@@ -76,7 +76,12 @@ std::vector<WantedLight> wanted_light(const PixelView& view, int frame, int widt
 }
 
 WorldRecords::WorldRecords(const FinalGather& gather, const Tracer& tracer, const PlacementOptions& options)
-    : gather_(gather), tracer_(tracer), options_(options), moving_(tracer.frame()) {}
+    : gather_(gather),
+      tracer_(tracer),
+      options_(options),
+      widest_(int(std::lround(2 * std::log2(2 * options.unseen_radius_px)))),
+      narrowest_(int(std::lround(2 * std::log2(options.min_radius_px))) - 1),
+      moving_(tracer.frame()) {}
 
 void WorldRecords::want(std::span<const WantedLight> wanted) {
   for (const WantedLight& at : wanted) levels_[at.level].wanted[0].push_back(at);
@@ -91,7 +96,7 @@ PlacementOptions WorldRecords::limited(float most_radius) const {
 
 std::optional<WorldRecords::Member> WorldRecords::member_at(const WorldPlace& place, int level, int spacing_class,
                                                             const RecordStore& placed, GatherCounts& counts) const {
-  Member member{place.key, {place.surface, {}, footprint_of(level)}, {}, 0, kMostRadius * spacing_of(spacing_class)};
+  Member member{place.key, {place.surface, {}, footprint_of(level)}, {}, 0, most_radius(spacing_class)};
   SeenPoint& seen = member.seen;
   if (moving_.contains(seen.surface.object)) return std::nullopt;
   const SurfaceMaterial material(tracer_.frame(), seen.surface, seen.footprint);
@@ -117,17 +122,16 @@ void WorldRecords::choose(GatherCounts& counts) {
 }
 
 void WorldRecords::choose(int number, Level& level, GatherCounts& counts) const {
-  for (int c = 1; c <= kWidest; ++c) {
-    level.wanted[std::size_t(c)] = level.wanted[std::size_t(c - 1)];
-    thin_out(tracer_, 2 * number + c, level.wanted[std::size_t(c)]);
+  for (int c = 1; c <= widest_; ++c) {
+    level.wanted.push_back(level.wanted.back());
+    thin_out(tracer_, 2 * number + c, level.wanted.back());
   }
-  for (int c = kWidest; c >= kNarrowest; --c) {
+  for (int c = widest_; c >= narrowest_; --c) {
     const int spacing_class = 2 * number + c;
-    const float radius =
-                    std::max(options_.min_radius_px * footprint_of(number), kMostRadius * spacing_of(spacing_class)),
+    const float radius = std::max(options_.min_radius_px * footprint_of(number), most_radius(spacing_class)),
                 slack = diagonal_of(spacing_class - kFiner);
     RecordStore reached(kMayBend);  // discs around wanted places
-    for (const WantedLight& at : level.wanted[std::size_t(c - kFiner)])
+    for (const WantedLight& at : level.wanted[std::size_t(std::max(0, c - kFiner))])
       reached.add(disc(at.place.position, at.place.normal, radius + slack));
     const std::vector<WorldPlace> places =
         world_places(tracer_, spacing_class, radius, places_of(level.wanted[std::size_t(c)]));

@@ -3,7 +3,6 @@
 // (docs/methods/records.md).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -56,10 +55,6 @@ class WorldRecords {
   std::vector<WantedLight> gaps(const RecordStore& store, float weight) const;
 
  private:
-  /// Widest and narrowest class of places of a level, above twice the level: spacings of 64 and 2.83 footprints.
-  /// Records with the smallest radius, 4 footprints, cover a surface whose places are 2.83 footprints apart.
-  static constexpr int kWidest = 12, kNarrowest = 3;
-
   struct Member {
     std::uint64_t key;  ///< of the place
     SeenPoint seen;
@@ -69,7 +64,7 @@ class WorldRecords {
   };
   struct Level {
     /// Element c: one wanted place a cell of class 2 level + c and direction.
-    std::array<std::vector<WantedLight>, kWidest + 1> wanted;
+    std::vector<std::vector<WantedLight>> wanted{1};
     RecordStore placed;  ///< the members' records
     std::vector<Member> members;
   };
@@ -85,6 +80,9 @@ class WorldRecords {
   const FinalGather& gather_;
   const Tracer& tracer_;
   PlacementOptions options_;
+  /// Widest and narrowest class of places, above twice the level: spacings of two radii of records from which all rays
+  /// miss (64 footprints), and of the smallest radius over root 2 (2.83 footprints), which such records cover.
+  int widest_, narrowest_;
   MovingObjects moving_;
   std::map<int, Level> levels_;
 };

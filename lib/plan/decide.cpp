@@ -181,9 +181,6 @@ std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& m
   return looks;
 }
 
-/// The power of 2^(1 / steps) that is nearest by ratio.
-double on_grid(double x, double steps) { return x > 0 ? std::exp2(std::round(std::log2(x) * steps) / steps) : x; }
-
 /// The way `wanted` among the ways of a frame; null if it is not there.
 const Way* find_way(const std::vector<Way>& ways, const Decisions& wanted) {
   const auto found = std::ranges::find_if(
@@ -217,7 +214,6 @@ bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   d.photon_paths = 0;
   for (const Look& look : looks) d.photon_paths = std::max(d.photon_paths, look.paths);
-  if (wish.photons == 0) d.photon_paths = std::uint64_t(on_grid(double(d.photon_paths), 1));
   const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
@@ -229,8 +225,8 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
                         1, 0, 0});
   d.indirect = way.method;
   d.caustic_map = way.map;
-  d.record_rays = int(on_grid(way.rays, 1));
-  d.pixel_error = wish.pixel_error * on_grid(way.pixel_error, 4);
+  d.record_rays = way.rays;
+  d.pixel_error = wish.pixel_error * way.pixel_error;
   if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
   d.reasons.push_back({"irradcache-build records", words});
 }

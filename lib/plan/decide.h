@@ -30,8 +30,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment);
 
 /// Makes the decisions of a shot, from which its segments depart only for a reason (decide). `pieces`: Plan::shot. With
 /// one piece these are the decisions of that segment. With more, pilots run for the first frame of the first piece, the
-/// middle frame of the middle one and the last frame of the last one. Numbers lie on a grid of powers of two (samples:
-/// of the fourth root of two), so that a small edit changes none of them.
+/// middle frame of the middle one and the last frame of the last one.
 Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wish, bool media,
                       const SceneSource& source);
 

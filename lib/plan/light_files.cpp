@@ -29,22 +29,31 @@ std::string photon_words(const GraphBuilder& g, int frame) {
 /// True if the light of the frame is derived from the static light of its segment.
 bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving != MovingMethod::anew; }
 
-/// Hash of all that a static map, its points and its records depend on.
-std::string static_content(const GraphBuilder& g, int frame) {
-  Hasher hasher;
+/// Frames in the name of files of static light: segments with the same static scene share them.
+constexpr int kAnyFrame = 0;
+
+/// A command that makes static light. All that the static scene depends on enters its key, but not the segment's frame
+/// by which the command names it.
+Command static_light(const GraphBuilder& g, int frame) {
   const PlannedSegment& s = g.segment(frame);
-  hasher.add(s.static_scene);
-  // The movers of all frames decide which light paths count as touched.
-  for (const PlannedFrame& f : s.frames) hasher.add(f.light);
-  return hasher.hex();
+  return {"--map static", {}, hash_of_texts({s.static_scene, s.frozen}), " --frame " + std::to_string(s.first)};
 }
 
 std::string static_photons(GraphBuilder& g, int frame) {
-  const int first = g.segment(frame).first;
-  Command c{"--frame " + std::to_string(first) + " --map static", {}, static_content(g, frame)};
+  Command c = static_light(g, frame);
   add_view(g, frame, c);
   c.option(photon_words(g, frame));
-  return g.add(stage_in("stands"), first, c);
+  return g.add(stage_in("stands"), kAnyFrame, c);
+}
+
+/// The light paths of the static scene that the segment's movers touch.
+std::string touched_paths(GraphBuilder& g, int frame) {
+  const int first = g.segment(frame).first;
+  Command c{"--frame " + std::to_string(first) + " --map static", {}, static_light(g, frame).content};
+  for (const PlannedFrame& f : g.segment(frame).frames) c.content += f.light;
+  add_view(g, frame, c);
+  c.option(photon_words(g, frame));
+  return g.add(stage_in("touched"), first, c);
 }
 
 /// Makes the command update the map of the previous state of light, of which it traces some groups again. The segment's
@@ -59,12 +68,11 @@ void add_update(GraphBuilder& g, int lit, Command& c) {
 }
 
 std::string static_points(GraphBuilder& g, int frame) {
-  const int first = g.segment(frame).first;
-  Command c{"--frame " + std::to_string(first) + " --map static", {}, static_content(g, frame)};
+  Command c = static_light(g, frame);
   c.file("--photons", static_photons(g, frame));
   add_view(g, frame, c);
   c.option(g.wish.points);
-  return g.add(stage_in("stands_points"), first, c);
+  return g.add(stage_in("stands_points"), kAnyFrame, c);
 }
 
 /// Adds the options that name the points: all points, or the low and the high part.
@@ -95,7 +103,7 @@ std::vector<int> together(const GraphBuilder& g, int frame) {
 
 std::string static_records(GraphBuilder& g, int frame) {
   const std::vector<int> pictures = together(g, frame);
-  Command c{"--frames " + joined(pictures) + " --map static", {}, static_content(g, frame) + g.cameras(pictures)};
+  Command c{"--frames " + joined(pictures) + " --map static", {}, static_light(g, frame).content + g.cameras(pictures)};
   c.file("--points", static_points(g, frame));
   c.option(record_words(g, frame));
   return g.add(stage_in("stands_cache"), pictures.front(), c);
@@ -209,8 +217,15 @@ std::string preview_light(GraphBuilder& g, int lit) {
 
 std::string photon_map(GraphBuilder& g, int lit) {
   if (moved(g, lit)) {
-    Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, g.state(lit).light};
-    c.file("--static", beside(static_photons(g, lit), ".paths"));
+    // The map follows from the static scene and the movers of this frame. The touched paths name the paths to trace,
+    // for all frames of the segment; these paths are no part of the key, so an edit of other frames changes nothing
+    // here.
+    Command c{"--frame " + std::to_string(lit) + " --map dynamic",
+              {},
+              g.state(lit).light + static_light(g, lit).content + photon_words(g, lit)};
+    const std::string touched = touched_paths(g, lit);
+    c.state_words = " --static " + touched;
+    c.inputs.push_back(touched);
     add_view(g, lit, c);
     return g.add(stage_in("moved"), lit, c);
   }

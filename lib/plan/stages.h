@@ -50,8 +50,10 @@ inline constexpr std::string_view kTracing = "trace,commit", kPlacing = "read ph
 
 /// All stages, in the order in which they run.
 inline constexpr auto kStages = std::to_array<StageInfo>({
-    {"stands", "photon-trace --map static", "photon-trace", Sees::drawn, "-o @.photons --paths @.paths --stats @.json",
-     ".photons .paths", Part::photons, "photons of the static scene", 1, 23, kTracing},
+    {"stands", "photon-trace --map static", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,
+     "photons of the static scene", 1, 23, kTracing},
+    {"touched", "photon-trace --map static --paths", "photon-trace", Sees::drawn, "--paths % --stats @.json", ".paths",
+     Part::photons, "light paths that movers touch", 1, 23, kTracing},
     {"photons", "photon-trace", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons, "photons", 1, 23,
      kTracing},
     {"moved", "photon-trace --map dynamic", "photon-trace", Sees::drawn, kUsual, ".photons", Part::photons,

@@ -96,17 +96,17 @@ formats::PhotonHeader PhotonTracing::header_of(const SceneFrame& frame, const Em
   return header;
 }
 
-/// Commits a map and counts the work.
-void PhotonTracing::finish(Output& output, const PhotonMapResult& result, std::uint64_t refused_rays) {
+/// Commits a map, if one is written, and counts the work.
+void PhotonTracing::finish(Output* output, const PhotonMapResult& result, std::uint64_t refused_rays) {
   Stats& stats = tool_.stats();
-  output.commit();
+  if (output) output->commit();
   stats.end_phase();
   stats.count("photons", double(result.totals.photon_count));
   stats.count("paths", double(result.path_count));
   stats.count("rays", double(result.ray_count));
   stats.count("specular_rays", double(result.specular_ray_count));
   if (result.medium_steps > 0) stats.count("medium_steps", double(result.medium_steps));
-  stats.count("bytes_written", double(output.written()));
+  if (output) stats.count("bytes_written", double(output->written()));
   stats.count("refused_rays", double(refused_rays));
 }
 
@@ -143,14 +143,14 @@ void PhotonTracing::trace_global(int frame_number) {
                            output.sink(), kept_)
               : write_photon_map(photons, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
-  finish(output, result, tracer.refused_ray_count());
+  finish(&output, result, tracer.refused_ray_count());
   if (!updates) warn_of_few(lights, result, frame_number);
 }
 
 /// Traces the static map of a segment and finds its touched paths.
 void PhotonTracing::trace_static(int frame_number) {
-  Output output(frame_name(options_.output, frame_number));
-  std::optional<Output> paths_output;
+  std::optional<Output> output, paths_output;
+  if (!options_.output.empty()) output.emplace(frame_name(options_.output, frame_number));
   if (!options_.paths.empty()) paths_output.emplace(frame_name(options_.paths, frame_number));
   tool_.stats().phase("evaluate");
   const SceneFrame frame = static_scene_of(input_.at(frame_number));
@@ -178,13 +178,15 @@ void PhotonTracing::trace_static(int frame_number) {
   PhotonTracer photons(tracer, lights, options);
   std::optional<MoverWatch> watch;
   if (paths_output) photons.watch(&watch.emplace(std::move(boxes)));
-  const PhotonMapResult result = write_photon_map(photons, header, output.sink(), tool_.progress_sink());
+  const auto nowhere = [](const void*, std::size_t) {};  // without output the paths alone are wanted
+  const PhotonMapResult result = write_photon_map(
+      photons, header, output ? output->sink() : formats::ContainerWriter::Sink(nowhere), tool_.progress_sink());
   tool_.stats().phase("commit");
   if (paths_output) {
     write_paths(header, photons, hashes, result.touched, *paths_output);
     tool_.stats().count("touched_paths", double(result.touched.size()));
   }
-  finish(output, result, tracer.refused_ray_count());
+  finish(output ? &*output : nullptr, result, tracer.refused_ray_count());
   warn_of_few(lights, result, frame_number);
 }
 
@@ -247,7 +249,7 @@ void PhotonTracing::trace_dynamic(int frame_number) {
   const PhotonMapResult result =
       write_dynamic_map(without, whole, touched, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
-  finish(output, result, tracer.refused_ray_count() + static_tracer.refused_ray_count());
+  finish(&output, result, tracer.refused_ray_count() + static_tracer.refused_ray_count());
   tool_.stats().count("touched_paths", double(touched.size()));
 }
 

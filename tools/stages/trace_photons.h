@@ -36,7 +36,7 @@ class PhotonTracing {
   EmissionTable aimed_emission(const SceneFrame& frame, int frame_number);
   PhotonOptions photon_options(int frame_number) const;
   formats::PhotonHeader header_of(const SceneFrame& frame, const EmissionTable& emission, int frame_number) const;
-  void finish(Output& output, const PhotonMapResult& result, std::uint64_t refused_rays);
+  void finish(Output* output, const PhotonMapResult& result, std::uint64_t refused_rays);
   void warn_of_few(const Lights& lights, const PhotonMapResult& result, int frame_number);
   void check_paths(const std::string& file, const formats::PathsHeader& paths, const SceneFrame& static_frame,
                    const std::string& emission, int frame);

@@ -266,10 +266,10 @@ TEST(Emission, TableKnowsTheLargestSizeOfAnAnimatedEmitter) {
   scene.duration_s = 1;
   const TimeOptions options;
   const Segment segment = segment_of(scene, 5, options);
-  ASSERT_EQ(segment.last, 23);
+  ASSERT_EQ(segment.last, 24);
   const EmissionTable table = build_emission_table(scene, segment, options);
   ASSERT_EQ(table.probability.size(), 4u);
-  const double largest = std::pow(1 + 2 * 23.0 / 24, 2);
+  const double largest = std::pow(3, 2);
   const double moving = table.probability[2] + table.probability[3];  // static surfaces come first
   EXPECT_NEAR(moving, largest / (1 + largest), 1e-6);
   const SceneFrame frame = scene_at_frame(scene, segment, 0, options);

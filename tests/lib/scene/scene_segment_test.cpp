@@ -58,7 +58,18 @@ TEST(SceneSegment, AnAnimationThatEndsBetweenFramesReachesTheNext) {
 }
 
 TEST(SceneSegment, ALongerAnimationMovesNoOtherBorder) {
-  EXPECT_EQ(borders(moving_for(2), 30), borders(moving_for(20), 30));
+  EXPECT_EQ(borders(moving_for(2), 5), borders(moving_for(20), 5));
+  EXPECT_EQ(borders(moving_for(3), 30), borders(moving_for(20), 30));
+}
+
+/// Frames 0 to 24 or 1 to 24 are one segment, not one of 24 frames and one of a single frame.
+TEST(SceneSegment, ALastPieceOfLessThanHalfASegmentJoinsTheOneBefore) {
+  for (const int frame : {0, 3, 24}) EXPECT_EQ(borders(moving_for(1), frame), Borders(0, 24)) << frame;
+  EXPECT_EQ(borders(moving_for(1), 25), Borders(25, 47));  // after the animation
+  EXPECT_EQ(borders(moving_for(58 / 24.0f), 30), Borders(24, 58));
+  EXPECT_EQ(borders(moving_for(58 / 24.0f), 50), Borders(24, 58));
+  EXPECT_EQ(borders(moving_for(58 / 24.0f), 5), Borders(0, 23));
+  EXPECT_EQ(borders(moving_for(59 / 24.0f), 50), Borders(48, 59));  // half a segment stands alone
 }
 
 TEST(SceneSegment, WhatMovesIsDecidedByValueWithinTheSegment) {
@@ -123,7 +134,7 @@ TEST(SceneSegment, BoundsHoldTheWholeSegment) {
   const Scene scene = moving_for(1);
   const Segment segment = segment_of(scene, 0, {});
   EXPECT_EQ(segment.world_bounds.lower, (Vec3d{0, 0, 0}));
-  EXPECT_NEAR(segment.world_bounds.upper.x, 1 + 23 / 24.0, 1e-7);
+  EXPECT_NEAR(segment.world_bounds.upper.x, 1 + 24 / 24.0, 1e-7);
   EXPECT_EQ(segment.world_bounds.upper.y, 1);
 }
 
