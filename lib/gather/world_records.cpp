@@ -24,8 +24,9 @@ constexpr std::uint64_t kCheckedOneIn = 32;  ///< one record in this many is gat
 
 float footprint_of(int level) { return std::ldexp(1.0f, level); }
 
-/// m: longest distance between two places of a cell.
-float diagonal_of(int spacing_class) { return 1.7320508f * spacing_of(spacing_class); }
+/// m: distance between places of a cell, about its mean. (A pixel farther away may miss a record at the border of its
+/// disc, whose weight is low there.)
+float apart_in(int spacing_class) { return 0.5f * spacing_of(spacing_class); }
 
 /// Number of pixels of a record's disc.
 double pixels_of(const IrradianceRecord& record, float footprint) {
@@ -129,7 +130,7 @@ void WorldRecords::choose(int number, Level& level, GatherCounts& counts) const 
   for (int c = widest_; c >= narrowest_; --c) {
     const int spacing_class = 2 * number + c;
     const float radius = std::max(options_.min_radius_px * footprint_of(number), most_radius(spacing_class)),
-                slack = diagonal_of(spacing_class - kFiner);
+                slack = apart_in(spacing_class - kFiner);
     RecordStore reached(kMayBend);  // discs around wanted places
     for (const WantedLight& at : level.wanted[std::size_t(std::max(0, c - kFiner))])
       reached.add(disc(at.place.position, at.place.normal, radius + slack));
@@ -149,7 +150,7 @@ void WorldRecords::choose(int number, Level& level, GatherCounts& counts) const 
 std::vector<std::uint8_t> WorldRecords::needed(int number, const Level& level) const {
   RecordStore discs;
   for (const Member& member : level.members)
-    discs.add(disc(member.record.position, member.record.normal, member.record.radius + diagonal_of(2 * number)));
+    discs.add(disc(member.record.position, member.record.normal, member.record.radius + apart_in(2 * number)));
   std::vector<std::uint8_t> needed(level.members.size());
   parallel_each(level.wanted[0].size(), 1024, [&](std::size_t i) {
     const WantedPlace& at = level.wanted[0][i].place;
