@@ -157,6 +157,22 @@ TEST(Plan, NothingDependsOnTheRangeThatIsAskedFor) {
   EXPECT_EQ(key, decision_key(plan_of(scene, {0, 1, 2, 3, 4, 5}).segments[0], wish, false));
 }
 
+/// First frames of the segments that stand for the shot.
+std::vector<int> pieces_of(const Plan& plan) {
+  std::vector<int> firsts;
+  for (const PlannedSegment& piece : plan.shot) firsts.push_back(piece.first);
+  return firsts;
+}
+
+TEST(Plan, TheShotIsTheAnimationWhateverIsAskedFor) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_EQ(pieces_of(plan_of(scene, {5}, 2)), (std::vector<int>{0, 4, 8}));
+  EXPECT_EQ(pieces_of(plan_of(scene, {0, 1, 8}, 2)), (std::vector<int>{0, 4, 8}));
+  EXPECT_EQ(pieces_of(plan_of(scene, {5}, 24)), (std::vector<int>{0}));
+  EXPECT_EQ(pieces_of(plan_of(still_room(), {5}, 2)), (std::vector<int>{0}));
+}
+
 TEST(Plan, FramesOutsideTheAnimationShowItsNearestEnd) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 2, 3});
@@ -240,6 +256,35 @@ TEST(Graph, ANameDoesNotChangeWithTheFirstFrameOfTheSegment) {
     EXPECT_EQ(names(four, folder), names(eight, folder)) << folder;
   d.view = "tempolux view 1.0\n1 2 3 4 6\n";
   EXPECT_NE(names(graph_of(plan_of(scene, {5}, 8), d), "photons"), names(eight, "photons"));
+}
+
+// The box slides as far in both segments, so their static scenes and bounds are equal.
+TEST(Graph, SegmentsWithTheSameStaticSceneShareItsLight) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 3, 1, 2, 0, 1.5, 3, 0.5});
+  Decisions d = records();
+  d.moving = MovingMethod::records;
+  const Graph graph = graph_of(plan_of(scene, {1, 5}, 4), d);
+  EXPECT_EQ(names(graph, "stands/").size(), 1u);
+  EXPECT_EQ(names(graph, "stands_points/").size(), 1u);
+  EXPECT_EQ(names(graph, "touched/").size(), 2u);
+  // Alone, the second segment makes the same files.
+  EXPECT_EQ(names(graph_of(plan_of(scene, {5}, 4), d), "stands/"), names(graph, "stands/"));
+}
+
+TEST(Graph, AnEditOfAMoverRemakesNoStaticLightAndNoOtherFrame) {
+  Scene scene = still_room(), edited = still_room();
+  slide(scene, kBox, {0, 3, 1, 2, 0, 1.5, 3, 0.5});
+  slide(edited, kBox, {0, 3, 1, 2, 0, 1.25, 3, 0.5});
+  Decisions d = records();
+  d.moving = MovingMethod::light;
+  const std::vector<int> all{0, 1, 2, 3, 4, 5, 6, 7};
+  const Graph before = graph_of(plan_of(scene, all, 4), d), after = graph_of(plan_of(edited, all, 4), d);
+  for (const char* folder : {"stands/", "stands_points/"}) EXPECT_EQ(names(before, folder), names(after, folder));
+  std::set<std::string> made;
+  for (const std::string& name : names(after))
+    if (!names(before).contains(name)) made.insert(name.substr(0, name.find('-')));
+  EXPECT_EQ(made, (std::set<std::string>{"touched/0004", "moved/0005", "points/0005", "cache/0005", "pictures/0005"}));
 }
 
 TEST(Graph, ANameChangesWithAllThatTheFileIsMadeFromAndWithNothingElse) {
