@@ -28,7 +28,7 @@ void check(const CLI::App& app, const tools::TraceOptions& options) {
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
   for (const char* name : {"--photons", "--kinds"})
     if (app.get_option(name)->count() > 0)
-      throw InputError(std::string(name) + ": of --map dynamic the static map has it");
+      throw InputError(std::string(name) + ": not with --map dynamic, which takes it from the static map");
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
       "left out");
   tool.choice_option("--map", options.map, {"global", "static", "dynamic"},
                      "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "
-                     "difference, for touched paths");
+                     "change that movers make, traced for the touched paths only");
   tool.output_option(options.paths, "with --map static: write the paths that movers can touch, .paths", "--paths");
   tool.file_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map");
   tools::add_update_options(tool, options.updating);

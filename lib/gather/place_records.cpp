@@ -29,7 +29,7 @@ class Placement {
   Placement(const FinalGather& gather, const RecordSource* source, const PlacementOptions& options, RecordStore& store,
             GatherCounts& counts)
       : gather_(gather),
-        again_(gather.with_seed(gather.seed() ^ 0x616761696eull)),
+        again_(gather.with_seed(gather.seed() ^ kSecondGather)),
         source_(source),
         options_(options),
         store_(store),

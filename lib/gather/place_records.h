@@ -33,6 +33,8 @@ struct RecordSource {
 /// Places of a batch. Records of one batch do not cover each other's places. Half and twice the value change the seen
 /// error less than another seed does (docs/notebook/constants.md).
 inline constexpr std::size_t kPlacedTogether = 256;
+/// Changes the seed of the second gather of a record that is gathered twice.
+inline constexpr std::uint64_t kSecondGather = 0x616761696eull;
 
 /// A picture that needs records.
 struct RecordPicture {

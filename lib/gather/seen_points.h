@@ -30,13 +30,13 @@ struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;
 };
-/// Finds the point that a raster position sees; none if no indirect light is needed there. Must be thread-safe.
+/// Finds the point that a raster position sees; empty if no indirect light is needed there. Must be thread-safe.
 using PixelView = std::function<std::optional<SeenPoint>(const Look&)>;
 
 /// The properties of a pixel's seen point that decide whether an edge lies between two pixels.
 struct Glimpse {
-  Vec3 position, normal;
-  float footprint = 0;
+  Vec3 position, normal;  ///< scene space, m; unit
+  float footprint = 0;    ///< m
   std::uint32_t object = 0;
   bool any = false, by_choice = false;
 
@@ -48,7 +48,8 @@ struct Glimpse {
         object(seen.surface.object),
         any(true),
         by_choice(seen.by_choice) {}
-  /// True if an edge may lie between the centres of these two neighbouring pixels.
+  /// True if an edge may lie between the centres of these two neighbouring pixels: another object, normals more than 26
+  /// degrees apart, or a step of more than two footprints.
   bool parted_from(const Glimpse& other) const;
 };
 
@@ -56,7 +57,8 @@ struct Glimpse {
 /// pixels. A pixel whose path chose one of several directions at a surface (SeenPoint::by_choice) is one, too.
 std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height);
 
-/// Further places in an edge pixel, in pixels, so that the samples of its frame are seen, too.
+/// Positions within an edge pixel [pixels] that are tested besides its centre. The frame's samples lie anywhere in the
+/// pixel and may see surfaces that the centre does not.
 inline constexpr Vec2 kWithin[] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
 inline constexpr std::uint32_t kEdgeLooks = std::size(kWithin);
 /// The centre of a pixel; pixel = y width + x.

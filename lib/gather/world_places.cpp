@@ -9,10 +9,11 @@ namespace {
 
 /// Cells of a column through which one line runs. A line is much longer than the spacing, so that few lines are empty.
 constexpr int kChunk = 8;
-/// Most crossings of a line that become places: bounds the time where surfaces lie in stacks.
+/// Most crossings of a line that become places: bounds the time at stacks of surfaces, such as foliage.
 constexpr std::uint32_t kMostCrossings = 64;
-/// Least component of a wanted normal along an axis for places of that axis: a place that faces mainly along the axis
-/// (component at least 1 / sqrt 3, 54.7 degrees) may be 20 degrees away, cos 74.7 = .264.
+/// An axis counts for a wanted normal if the normal's component along it is at least this. The normal of a place of the
+/// axis is within acos(1 / sqrt 3) = 54.7 degrees of the axis, and within 20 degrees of the wanted normal; cos 74.7 =
+/// .264, rounded down.
 constexpr float kLeastComponent = 0.26f;
 
 /// Bit of a direction along an axis: 2 axis for the positive one, 2 axis + 1 for the negative one.
@@ -20,7 +21,8 @@ constexpr std::uint8_t side_bit(int axis, bool negative) { return std::uint8_t(1
 
 /// Part of a column of cells along an axis.
 struct Column {
-  std::int32_t u = 0, v = 0, chunk = 0;  ///< cell along the two axes after `axis`, in order, and chunk along `axis`
+  std::int32_t u = 0, v = 0,
+               chunk = 0;  ///< u, v: cells along axes (axis + 1) % 3, (axis + 2) % 3; chunk: kChunk cells along `axis`
   std::uint8_t axis = 0;
   std::uint8_t sides = 0;  ///< bits of the wanted sides
 

@@ -1,9 +1,10 @@
 // lib/gather/world_places.h -- places on surfaces that follow from the surfaces alone, not from a camera
 // (docs/methods/records.md).
 //
-// Space is divided into cubic cells of the spacing s. In each column of cells along an axis a line runs at a place
-// that is keyed by the column. Where the line crosses a surface that faces mainly along the axis is a place. So a
-// surface of the area A that faces along an axis has A / s^2 places, at most 1.5 s apart along each other axis.
+// Space is divided into cubic cells of the spacing s. Along each axis the cells form columns. Each column holds one
+// line along the axis; a hash of the column decides where. Each crossing of a line with a surface that faces mainly
+// along the axis is a place. So a surface of the area A that faces along an axis has A / s^2 places. Neighbouring
+// places are at most 1.5 s apart along each of the other two axes.
 #pragma once
 
 #include <algorithm>
@@ -22,27 +23,28 @@ namespace tempolux {
 /// lower one.
 float spacing_of(int spacing_class);
 
-/// A place of a surface and one of its sides.
+/// A place on one side of a surface.
 struct WorldPlace {
   SurfacePoint surface;
   Vec3 side;              ///< geometric normal on this side, unit
   std::uint64_t key = 0;  ///< hash of class, column, number on the line and side; not 0
 };
 
-/// A place around which others are wanted.
+/// A seen point around which records are wanted.
 struct WantedPlace {
   Vec3 position;  ///< scene space, m
   Vec3 normal;    ///< unit, on the wanted side
 };
 
-/// Bits of the directions along axes that places near a place with this normal may face: bit 2 axis for the positive
-/// direction, bit 2 axis + 1 for the negative one.
+/// The axis directions that a surface may mainly face if its normal is within 20 degrees of `normal`, as bits: 2 axis
+/// for the positive direction, 2 axis + 1 for the negative one.
 std::uint8_t faced_axes(Vec3 normal);
 
 /// The cells of a class.
 class PlaceCells {
  public:
   PlaceCells(const Tracer& tracer, int spacing_class);
+  /// Number of the cell along `axis` that holds a position (scene space, m).
   std::int32_t at(Vec3 position, int axis) const {
     const double cells = (origin_[axis] + double(position[axis])) / spacing_ + kShift;
     return std::int32_t(std::clamp(std::floor(cells), -1e9, 1e9));
@@ -53,19 +55,20 @@ class PlaceCells {
     for (int axis = 0; axis < 3; ++axis) key = mix64(key ^ std::uint32_t(at(position, axis)));
     return key;
   }
-  /// Scene coordinate [m] of a place in cells.
+  /// Scene-space coordinate [m] along `axis` of a position that is given in cells.
   float local(double cells, int axis) const { return float((cells - kShift) * spacing_ - origin_[axis]); }
   double spacing() const { return spacing_; }
 
  private:
-  /// Borders of cells lie at these shares of the spacing, because surfaces of scenes often lie at whole numbers.
+  /// Cell borders are shifted by this share of the spacing off multiples of it. Surfaces often lie at whole metres and
+  /// would coincide with borders.
   static constexpr double kShift = 0.381966;
   Vec3d origin_;
   double spacing_;
 };
 
-/// Keeps one of the wanted places in each cell of this class that face the same of the six axes, the first one.
-/// `Wanted` holds a WantedPlace `place`.
+/// In each cell of this class, removes a wanted place if the places kept before it already face all its axis
+/// directions. `Wanted` holds a WantedPlace `place`.
 template <class Wanted>
 void thin_out(const Tracer& tracer, int spacing_class, std::vector<Wanted>& wanted) {
   std::unordered_map<std::uint64_t, std::uint8_t> known;

@@ -13,10 +13,10 @@
 namespace tempolux {
 namespace {
 
-/// Largest radius [m] of a record of a class: the spacing of the next wider class. A class has to cover what the wider
-/// classes left open.
+/// Largest radius [m] of a record of a class: the spacing of the next wider class. A record need not reach farther,
+/// because a gap that wider classes left is narrower than that.
 float most_radius(int spacing_class) { return spacing_of(spacing_class + 1); }
-/// Cells of wanted places are this many classes narrower than the places that are tested against them.
+/// Places of class c are tested against wanted places thinned out to class c - kFiner, so that thinning loses little.
 constexpr int kFiner = 3;
 /// Least cosine between the normal of a wanted place, which normal maps bend, and that of a surface near it.
 constexpr float kMayBend = 0.3f;
@@ -24,8 +24,8 @@ constexpr std::uint64_t kCheckedOneIn = 32;  ///< one record in this many is gat
 
 float footprint_of(int level) { return std::ldexp(1.0f, level); }
 
-/// m: distance between places of a cell, about its mean. (A pixel farther away may miss a record at the border of its
-/// disc, whose weight is low there.)
+/// Slack [m] for the distance between a seen point and the point that thin_out() kept for its cell: about the mean
+/// distance. A point farther away misses only the border of a record's disc, where its weight is low.
 float apart_in(int spacing_class) { return 0.5f * spacing_of(spacing_class); }
 
 /// Number of pixels of a record's disc.
@@ -34,7 +34,7 @@ double pixels_of(const IrradianceRecord& record, float footprint) {
   return kPi * radius * radius;
 }
 
-/// A disc without light, to find out which places are near it and on its surface.
+/// A record without light. A RecordStore of these answers which places lie within `radius` on the same surface.
 IrradianceRecord disc(Vec3 position, Vec3 normal, float radius) {
   IrradianceRecord record;
   record.position = position;
@@ -110,8 +110,8 @@ std::optional<WorldRecords::Member> WorldRecords::member_at(const WorldPlace& pl
   record.normal = seen.normal;
   record.object = seen.surface.object;
   record.radius_unclamped = member.range = gather_.distance(seen.surface, seen.normal, counts);
-  // A place that sees other surfaces closer than a pixel lies in a crack, mostly out of sight, and is dark. With the
-  // smallest radius of 4 pixels its record would darken places in sight.
+  // A place whose surroundings are closer than a pixel lies in a crack: dark and mostly hidden. Its record has a radius
+  // of at least 4 pixels, so it would darken the visible surface beside the crack.
   if (member.range < seen.footprint) return std::nullopt;
   limit_radius(record, seen.footprint, limited(member.most_radius));
   gather_.look_around(seen.surface, record);
@@ -119,10 +119,10 @@ std::optional<WorldRecords::Member> WorldRecords::member_at(const WorldPlace& pl
 }
 
 void WorldRecords::choose(GatherCounts& counts) {
-  for (auto& [number, level] : levels_) choose(number, level, counts);
+  for (auto& [number, level] : levels_) choose_in_level(number, level, counts);
 }
 
-void WorldRecords::choose(int number, Level& level, GatherCounts& counts) const {
+void WorldRecords::choose_in_level(int number, Level& level, GatherCounts& counts) const {
   for (int c = 1; c <= widest_; ++c) {
     level.wanted.push_back(level.wanted.back());
     thin_out(tracer_, 2 * number + c, level.wanted.back());
@@ -185,7 +185,7 @@ void WorldRecords::gather(const RayShare& share, RecordStore& store, GatherCount
     }
   }
   const std::size_t before = store.records().size();
-  const FinalGather second = gather_.with_seed(gather_.seed() ^ 0x616761696eull);
+  const FinalGather second = gather_.with_seed(gather_.seed() ^ kSecondGather);
   std::vector<IrradianceRecord> records(chosen.size());
   counts += parallel_sum<GatherCounts>(chosen.size(), 8, [&](std::size_t i, GatherCounts& local) {
     const Member& member = *chosen[i];

@@ -33,25 +33,28 @@ std::vector<WantedLight> wanted_light(const PixelView& view, int frame, int widt
 ///
 /// choose() goes through classes of places (world_places.h) from wide to narrow spacing. A place gets a record if the
 /// weights of the records of wider classes add up to less than PlacementOptions::min_weight there. So the records of a
-/// level follow from the surfaces, whatever was wanted. Only places whose record may reach a wanted place are tested.
-/// (At the border of what is wanted a place may get a record that it would not get if more were wanted.)
+/// level follow from the surfaces, not from what was wanted, except at the border of the wanted region: only places
+/// whose record may reach a wanted place are tested, so a wider record outside may be missing, and a place may get a
+/// record that it would not get otherwise.
 class WorldRecords {
  public:
   /// Surfaces that move in the segment get no records. The arguments must outlive this object.
   WorldRecords(const FinalGather& gather, const Tracer& tracer, const PlacementOptions& options);
 
+  /// Adds seen points; called once a camera.
   void want(std::span<const WantedLight> wanted);
+  /// Decides which places get records, without gathering; adds its distance rays to `counts`.
   void choose(GatherCounts& counts);
 
   /// Share of GatherOptions::rays for the record of a point, in [1/8, 1]; empty: 1.
   using RayShare = std::function<float(const SeenPoint&)>;
-  /// Gathers the records that are valid at wanted places and adds them to `store`. A record that two levels need gets
+  /// Gathers the records that can light a wanted place and adds them to `store`. A record that two levels need gets
   /// the larger of both radii. Every 32nd record is gathered twice to scale the noise of all, as in place_records().
   /// Same records for any number of threads.
   void gather(const RayShare& share, RecordStore& store, GatherCounts& counts) const;
 
-  /// Wanted places, one a pixel, where the weights of the records in `store` add up to less than `weight`: on movers,
-  /// and on small surfaces that no line meets. Ascending by frame, in a random order within a frame.
+  /// Wanted places where the weights of the records in `store` add up to less than `weight`. These are on movers, and
+  /// on small surfaces that no line meets. Ascending by frame, in a random order within a frame.
   std::vector<WantedLight> gaps(const RecordStore& store, float weight) const;
 
  private:
@@ -72,7 +75,7 @@ class WorldRecords {
   PlacementOptions limited(float most_radius) const;
   std::optional<Member> member_at(const WorldPlace& place, int level, int spacing_class, const RecordStore& placed,
                                   GatherCounts& counts) const;
-  void choose(int number, Level& level, GatherCounts& counts) const;
+  void choose_in_level(int number, Level& level, GatherCounts& counts) const;
   std::vector<std::uint8_t> needed(int number, const Level& level) const;
   IrradianceRecord gathered(const FinalGather& gather, const Member& member, const RayShare& share,
                             GatherCounts& counts) const;
@@ -80,8 +83,9 @@ class WorldRecords {
   const FinalGather& gather_;
   const Tracer& tracer_;
   PlacementOptions options_;
-  /// Widest and narrowest class of places, above twice the level: spacings of two radii of records from which all rays
-  /// miss (64 footprints), and of the smallest radius over root 2 (2.83 footprints), which such records cover.
+  /// The classes tested in level l are 2 l + widest_ down to 2 l + narrowest_. The widest spacing is twice the radius
+  /// of records all of whose rays miss: 64 footprints. The narrowest is the smallest radius over root 2: 2.83
+  /// footprints. Records of the smallest radius cover a surface at that spacing.
   int widest_, narrowest_;
   MovingObjects moving_;
   std::map<int, Level> levels_;

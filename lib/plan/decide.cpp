@@ -1,4 +1,5 @@
-// lib/plan/decide.cpp -- makes all decisions of a segment; lib/render's choose_*.h hold the measurements behind each.
+// lib/plan/decide.cpp -- makes all decisions of a shot and its segments; lib/pilot's choose_*.h hold the measurements
+// behind each.
 #include "lib/plan/decide.h"
 
 #include <algorithm>
@@ -29,7 +30,8 @@ constexpr std::size_t kMostViews = 16;
 /// Fewest states of light for which computing the light of the static scene first pays: it is computed once and every
 /// state follows from it.
 constexpr std::size_t kFewestStates = 3;
-/// A segment departs from the shot's way to light if that way needs this many times the work of the segment's best.
+/// A segment departs from the shot's way to light if that way needs more than this many times the work of the segment's
+/// best; departs() allows for the pilots' error besides.
 constexpr double kDeparture = 1.3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
@@ -371,8 +373,8 @@ Decisions begin(const PlannedSegment& segment, bool media) {
   return d;
 }
 
-/// Decides about the light of frames `d.looked`. `segment`: its pictures and movers count. `view_frames`: for
-/// view_of().
+/// Decides about the light of frames `d.looked`. `segment` supplies the pictures and the movers, `view_frames` the frames
+/// from which view_of() looks.
 void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
                   const SceneSource& source, Decisions& d) {
   StaticTree tree;
@@ -451,7 +453,10 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   d.looked = looked_frames(segment);
   refuse_paths(wish, media);
   if (!d.photons()) {
-  } else if (!shot) {
+    decide_walk(segment, d);
+    return d;
+  }
+  if (!shot) {
     decide_light(segment, frames_of({&segment, 1}), wish, media, source, d);
   } else if (wish.method == FrameMethod::preview) {
     d.indirect = shot->indirect;

@@ -29,11 +29,12 @@ std::string photon_words(const GraphBuilder& g, int frame) {
 /// True if the light of the frame is derived from the static light of its segment.
 bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving != MovingMethod::anew; }
 
-/// Frames in the name of files of static light: segments with the same static scene share them.
+/// Frame number in the names of static light: the same for all segments, so that segments with equal static scenes
+/// share the files.
 constexpr int kAnyFrame = 0;
 
-/// A command that makes static light. All that the static scene depends on enters its key, but not the segment's frame
-/// by which the command names it.
+/// A command that makes static light. Its key holds everything that the static scene depends on. The key leaves out the
+/// frame number in the command, which differs between segments with the same static scene.
 Command static_light(const GraphBuilder& g, int frame) {
   const PlannedSegment& s = g.segment(frame);
   return {"--map static", {}, hash_of_texts({s.static_scene, s.frozen}), " --frame " + std::to_string(s.first)};
@@ -146,7 +147,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
 std::string record_file(GraphBuilder& g, int frame);
 
 std::string kept_records(GraphBuilder& g, int lit) {
-  const PlannedSegment& s = g.segment(lit);  // samples store its borders
+  const PlannedSegment& s = g.segment(lit);  // the .radsamples file stores its borders
   Command c{"--frame " + std::to_string(lit),
             {},
             g.state(lit).light + g.cameras(s.pictures(lit)) + joined({s.first, s.last})};
@@ -217,9 +218,8 @@ std::string preview_light(GraphBuilder& g, int lit) {
 
 std::string photon_map(GraphBuilder& g, int lit) {
   if (moved(g, lit)) {
-    // The map follows from the static scene and the movers of this frame. The touched paths name the paths to trace,
-    // for all frames of the segment; these paths are no part of the key, so an edit of other frames changes nothing
-    // here.
+    // The .paths file lists the paths to trace for all frames of the segment. It is left out of the key: an edit of
+    // another frame changes that file, but not this frame's map.
     Command c{"--frame " + std::to_string(lit) + " --map dynamic",
               {},
               g.state(lit).light + static_light(g, lit).content + photon_words(g, lit)};

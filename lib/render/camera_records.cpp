@@ -12,9 +12,8 @@
 namespace tempolux {
 namespace {
 
-/// Factor of PlacementOptions::min_weight where records of the world leave gaps: on movers, and on surfaces that lines
-/// between places miss. With the full min_weight, pixels would get records of their own all over the picture, at all
-/// places that are barely covered.
+/// A place is a gap if its weights add up to less than kGapWeight min_weight. With a factor of 1 every barely covered
+/// place would get a record that depends on a pixel.
 constexpr float kGapWeight = 0.5f;
 
 /// Inputs for the placement of records.
@@ -85,11 +84,12 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   cache.changes = record_changes(cache.standing, input.changes, input.points, input.seed);
   const InfluenceField field(cache.standing, cache.changes, input.influence);
   const MovingObjects moving(input.tracer.frame());
-  const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
+  const auto on_mover = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
   // The picture holds f E_y (LocalisedLight), so the squared error of E_y counts f^2 times. A record with f times the
-  // rays has 1 / f times the squared error: in all f times that of a record with all rays, which is never more.
+  // rays has 1 / f times the squared error. So its error in the picture is f^2 / f = f <= 1 times that of a record with
+  // all rays.
   const auto share = [&](const SeenPoint& seen) {
-    return rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
+    return on_mover(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
   };
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
     IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share(seen));
@@ -98,7 +98,7 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
     return record;
   }};
   const auto matters = [&](const SeenPoint& seen) {
-    return rides(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
+    return on_mover(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
   };
   RecordStore store;
   const GatherCounts counts =

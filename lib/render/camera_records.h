@@ -22,8 +22,8 @@ struct RecordCameras {
   std::function<void(double done)> progress;  ///< called with [0, 1]; may be empty
 };
 
-/// Adds the records that all cameras need to `store` and returns the counts. The records are valid while nothing but
-/// the camera changes. Same records for any number of threads.
+/// Adds every record that any of the cameras needs to `store` and returns the counts. The records are valid while
+/// nothing but the camera changes. Same records for any number of threads.
 GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras,
                                const PlacementOptions& options, RecordStore& store);
 
@@ -38,9 +38,9 @@ struct UpdateInput {
   std::uint64_t seed = 0;  ///< of the estimates of changes
 };
 
-/// Estimates the changes of the static records cache.standing by movers, and gathers records for the frame where the
-/// cameras see influence above the lower threshold or movers. Sets cache.changes, gathered and least_cosine, and
-/// returns the counts. Same records for any number of threads.
+/// Estimates by how much movers change each static record in cache.standing. Gathers new records where a camera sees a
+/// mover, or a place where the movers' influence is above the lower threshold. Sets cache.changes, gathered and
+/// least_cosine, and returns the counts. Same records for any number of threads.
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
                                 LocalisedRecords& cache);
 

@@ -16,9 +16,8 @@ using test::HandMadeScene;
 using test::matte;
 using test::pixel_by_pixel;
 
-/// A plane of 4 m across has one place in each cell of .25 m: 16 x 16 within 2 m of its centre. Cells at the border are
-/// cut; a line keeps a quarter of a cell away from the sides of its column, so the 15 x 15 whole cells have exactly one
-/// place each. Seen to fail: with two lines in a column; with lines along other axes.
+/// A plane of 4 m has 16 x 16 cells of .25 m. Its border may cut the outermost, so at least 14 x 14 cells within 1.8 m
+/// are whole. Each cell has one place. Seen to fail: with two lines in a column; with lines along other axes.
 TEST(WorldPlaces, APlaneHasOnePlaceACell) {
   HandMadeScene scene;
   scene.add_quad({-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, matte(Rgb(0.5f)));
@@ -41,7 +40,7 @@ TEST(WorldPlaces, APlaneHasOnePlaceACell) {
   EXPECT_GE(whole, 14 * 14);
 }
 
-/// What is asked for does not change a place: those near both of two wanted places are the same, to the bit.
+/// Places do not depend on what is wanted: around two wanted places, the places near both are equal to the bit.
 TEST(WorldPlaces, FollowFromTheSurfacesAlone) {
   const GatherRoom room;
   const WantedPlace one[] = {{{0, -1, 0.5f}, {0, 1, 0}}}, other[] = {{{0.3f, -1, 0.6f}, {0, 1, 0}}};
@@ -64,9 +63,9 @@ RecordStore records_for(const GatherRoom& room, std::span<const Vec3> eyes) {
   GatherCounts counts;
   int frame = 0;
   for (const Vec3 eye : eyes)
-    world.want(wanted_light(
-        pixel_by_pixel([&](float x, float y, const PathRandom*) { return room.see(x, y, 96, 64, eye); }), frame++, 96,
-        64));
+    world.want(
+        wanted_light(pixel_by_pixel([&](float x, float y, const PathRandom*) { return room.see(x, y, 96, 64, eye); }),
+                     frame++, 96, 64));
   world.choose(counts);
   RecordStore store;
   world.gather({}, store, counts);
@@ -75,8 +74,9 @@ RecordStore records_for(const GatherRoom& room, std::span<const Vec3> eyes) {
 
 /// Two cameras that see the same surfaces read the same light, whatever else each of them sees. A place near the border
 /// of a picture may have a record more (WorldRecords), so light at the inner pixels of the first picture is compared,
-/// where the second camera looks as well. The cameras are close: where one is nearer by a level it has narrower records,
-/// which the other reads at the border of that level. Seen to fail: with places keyed by pixels (place_records) no two values agree.
+/// where the second camera looks as well. The cameras are close: where one is nearer by a level it has narrower
+/// records, which the other reads at the border of that level. Seen to fail: with places keyed by pixels
+/// (place_records) no two values agree.
 TEST(WorldRecords, LightAtAPlaceDoesNotDependOnTheCamera) {
   const GatherRoom room;
   const Vec3 here{0.9f, 0.7f, 0.9f}, there{0.88f, 0.71f, 0.91f};
@@ -110,7 +110,7 @@ TEST(WorldRecords, AreTheSameForAnyNumberOfThreads) {
 }
 
 /// A panel stands 2 mm in front of a wall. The wall behind it gets no records, since it sees the panel closer than a
-/// pixel; with records the wall's edge would be dark up to four pixels beside the panel. Seen to fail: without this
+/// pixel; with records the wall would be dark up to four pixels beside the panel. Seen to fail: without this
 /// rule.
 TEST(WorldRecords, CracksHaveNone) {
   HandMadeScene scene;
