@@ -15,9 +15,9 @@ namespace tempolux {
 /// has an exact adjoint for photons (docs/methods/shading-normals.md).
 class ShadingFrame : public Frame {
  public:
-  ShadingFrame(Vec3 n, Vec3 g) : Frame(n), geometric_(g), flat_(n == g) {}
+  ShadingFrame(Vec3 n, Vec3 g) : Frame(n), geometric_(g) {}
 
-  bool flat() const { return flat_; }  ///< true if n = g: no direction has an image
+  bool flat() const { return normal == geometric_; }  ///< true if n = g: no direction has an image
   /// True if g faces away from light that is reflected to w (scene space), or faces light that is transmitted to w.
   bool on_wrong_side(Vec3 w, bool transmitted) const { return (transmitted ? -1.0f : 1.0f) * dot(w, geometric_) < 0; }
   /// The image of w; unit, scene space.
@@ -25,14 +25,13 @@ class ShadingFrame : public Frame {
   /// The image of a direction w (unit, local frame) in the local frame, if it is on w's side of n, so that a lobe that
   /// reaches w reaches the image as well.
   std::optional<Vec3> image_in_lobe(Vec3 w) const {
-    if (flat_) return std::nullopt;
+    if (flat()) return std::nullopt;
     const Vec3 g = to_local(geometric_), seen = w - g * (2 * dot(w, g));
     return seen.z * w.z > 0 ? std::optional(seen) : std::nullopt;
   }
 
  private:
   Vec3 geometric_;
-  bool flat_;
 };
 
 }  // namespace tempolux

@@ -19,7 +19,7 @@ struct Scattered {
   /// leads to the wrong side of the triangle (ShadingFrame); its pdf is ShadingPoint::pdf_specular.
   Scattered(const Bsdf& bsdf, const ShadingFrame& frame, const Bsdf::Direction& eye, float u_lobe, Vec2 u)
       : sample(bsdf.sample(eye, u_lobe, u)), travel(frame.to_world(sample.wi)) {
-    if (frame.flat() || sample.diffuse || sample.straight || is_black(sample.weight)) return;
+    if (sample.diffuse || sample.straight || frame.flat() || is_black(sample.weight)) return;
     if (!frame.on_wrong_side(travel, sample.transmitted)) return;
     travel = frame.image(travel);
     sample.wi = frame.to_local(travel);
