@@ -1,7 +1,7 @@
 // lib/material/seen_side.h -- a surface point whose normals are turned to the side from which it is seen.
 #pragma once
 
-#include "lib/core/frame.h"
+#include "lib/material/shading_frame.h"
 #include "lib/scene/surface_point.h"
 
 namespace tempolux {
@@ -18,19 +18,20 @@ inline Vec3 face_forward(Vec3 n, Vec3 towards) { return dot(n, towards) < 0 ? -n
 /// Bsdf. If the shading normal does not face wo, the geometric normal replaces it.
 struct SeenSide {
   Vec3 normal_geometric, normal;
-  Frame frame;  ///< z = normal
+  ShadingFrame frame;  ///< z = normal
   Vec3 wo_local;
 
   SeenSide(const SurfacePoint& point, Vec3 wo)
       : normal_geometric(face_forward(point.normal_geometric, wo)),
         normal(viewed_normal(point, wo, normal_geometric)),
-        frame(normal),
+        frame(normal, normal_geometric),
         wo_local(frame.to_local(wo)) {}
 
   /// A normal n of the surface, turned to the side of wo.
   Vec3 facing(Vec3 n) const { return face_forward(n, normal_geometric); }
 
-  /// True if wi is on wo's side of the surface, by both normals. Only light from there can be reflected.
+  /// True if wi is on wo's side of the surface, by both normals. Only light from there can be reflected. That holds for
+  /// light that a lobe sends to an image (ShadingFrame) as well: the image of a direction in the lobe is on that side.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
   /// True if wi is on the other side, by both normals. Only light from there can be transmitted.
   bool sees_behind(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <sstream>
 #include <type_traits>
 
@@ -38,7 +39,7 @@ PathKind kind_after(bool diffuse_seen, bool specular_seen) {
 /// A photon that arrives at a surface. Normals are turned to the side from which the photon comes.
 struct Arrival {
   Vec3 wi, normal_geometric, normal;
-  Frame frame;
+  ShadingFrame frame;
   Vec3 wi_local;
   float shading_correction;  ///< |wi.n_s| / |wi.n_g|
   bool flat;                 ///< true if the two normals are equal
@@ -47,11 +48,19 @@ struct Arrival {
       : wi(-travel),
         normal_geometric(point.normal_geometric * std::copysign(1.0f, dot(point.normal_geometric, wi))),
         normal(point.normal * std::copysign(1.0f, dot(point.normal, normal_geometric))),
-        frame(normal),
+        frame(normal, normal_geometric),
         wi_local(frame.to_local(wi)),
-        flat(normal == normal_geometric) {
+        flat(frame.flat()) {
     const float geometric = dot(wi, normal_geometric);
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
+  }
+
+  /// Multiplies the weight of an event S by Veach's correction for shading normals: `correction`, |wi.n_s| / |wi.n_g|,
+  /// times |travel.n_g| / |travel.n_s|. Black on the wrong side of the triangle.
+  void weigh_specular(float correction, Vec3 travel, Bsdf::Sample& next) const {
+    const float side = next.transmitted ? -1.0f : 1.0f;
+    next.weight *=
+        correction * std::max(0.0f, side * dot(travel, normal_geometric)) / std::max(1e-6f, side * next.wi.z);
   }
 
   /// Weight of an event D towards `travel`: f_D cos / pdf. The pdf is that of cosine-distributed directions around the
@@ -91,6 +100,22 @@ struct Arrival {
     const float side = next.transmitted ? -1.0f : 1.0f;
     if (next.diffuse || side * dot(travel, normal) > kLooksAway) next.weight = Rgb(0.0f);
     next.diffuse = false;
+    return next;
+  }
+
+  /// An event S for light from the image of wi (ShadingFrame): the adjoint of a camera path's event whose direction is
+  /// mirrored in the plane of the triangle. Black if wi has no image in a lobe, or if D was drawn. Such events are
+  /// added to those by the shading normal.
+  Bsdf::Sample scatter_by_image(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
+    Bsdf::Sample next;
+    const float geometric = dot(wi, normal_geometric);
+    const std::optional<Vec3> image = frame.image_in_lobe(wi_local);
+    if (!image || !(wi_local.z > 0 && geometric > 0)) return next;
+    next = bsdf.sample(*image, u_lobe, u);
+    travel = frame.to_world(next.wi);
+    if (next.diffuse) next.weight = Rgb(0.0f);
+    next.diffuse = false;
+    weigh_specular(image->z / geometric, travel, next);
     return next;
   }
 };
@@ -462,14 +487,22 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
   // A path is aimed only once: a product of several factors of aim() would be very large for very rare paths.
   const bool aims =
       !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(at.point.position);
-  // True if the photon can be scattered by the shading normal and by the geometric normal. Each normal is then chosen
-  // with probability 1/2, and the photon gets the weight 2.
-  bool both = false;
+  // A photon may be scattered in up to three ways: by the shading normal, by the geometric normal, and by the shading
+  // normal as if it came from its image. Each way has the same chance, and the photon gets the number of ways as
+  // weight.
+  int ways = 1;
+  bool drawn = false;
   if (bsdf.has_specular() && at.bent()) {
-    next = at.scatter_by_geometric_normal(bsdf, u_lobe, draw.u, travel);
-    both = !is_black(next.weight);
+    Bsdf::Sample further[2];
+    Vec3 to[2];
+    const auto add = [&](const Bsdf::Sample& sample) { further[ways - 1] = sample, ways += !is_black(sample.weight); };
+    add(at.scatter_by_geometric_normal(bsdf, u_lobe, draw.u, to[0]));
+    add(at.scatter_by_image(bsdf, u_lobe, draw.u, to[ways - 1]));
+    const int way = ways > 1 ? int(random.get1(draw.bounce, Purpose::lobe, 1) * float(ways)) : 0;
+    drawn = way < ways - 1;
+    if (drawn) next = further[way], travel = to[way];
   }
-  if (!(both && random.get1(draw.bounce, Purpose::lobe, 1) < 0.5f)) {
+  if (!drawn) {
     next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction) : bsdf.sample(at.wi_local, u_lobe, draw.u);
     travel = at.frame.to_world(next.wi);
     if (!at.flat && !(at.wi_local.z > 0)) next.diffuse = true;
@@ -478,12 +511,10 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
       if (aims) event.aimed = aim(at.point.position, at.normal_geometric, random, draw.bounce, travel);
       next.weight = at.scatter_diffuse(bsdf, next, travel);
     } else if (!at.flat) {
-      const float side = next.transmitted ? -1.0f : 1.0f;
-      next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
-                     std::max(1e-6f, side * next.wi.z);
+      at.weigh_specular(at.shading_correction, travel, next);
     }
   }
-  if (both) next.weight *= 2;
+  if (ways > 1) next.weight *= float(ways);
   return event;
 }
 

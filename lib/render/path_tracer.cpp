@@ -152,7 +152,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
     begin_matte(at.known, state);
   } else {
     state.specular = true;
-    state.widen(x.bsdf.gloss_density(next.wi, x.eye));
+    state.widen(x.gloss_density(next.wi));
   }
   event.pass(x.surface, at.material, dot(x.surface.normal_geometric, state.ray.direction) < 0, state.inside);
   if (!survives(state, kLargestPhotonSurvival)) return false;
@@ -164,8 +164,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   last.normal = next.transmitted ? -x.normal : x.normal;
   last.light_share = next.transmitted ? x.bsdf.light_share_behind() : 1 - x.bsdf.light_share_behind();
   last.from = sampled_lights();
-  last.pdf_solid_angle =
-      times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.bsdf.pdf_specular(next.wi, x.eye));
+  last.pdf_solid_angle = times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.pdf_specular(next.wi));
   go_on(spawn_ray(x.surface, wi), state);
   return true;
 }
@@ -235,11 +234,11 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
   const Vec3 wi = from.w;
   Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
-  Rgb glossy = has_specular ? x.bsdf.eval_specular(from, x.eye) : Rgb(0.0f);
+  Rgb glossy = has_specular ? x.eval_specular(from) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
-    if (has_specular) glossy *= mis_power(pdf, at.times_specular * x.bsdf.pdf_specular(wi, x.eye));
+    if (has_specular) glossy *= mis_power(pdf, at.times_specular * x.pdf_specular(wi));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   count(1, counts_.shadow, state);

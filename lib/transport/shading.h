@@ -1,6 +1,8 @@
 // lib/transport/shading.h -- a surface point with the side that a ray sees and its Bsdf.
 #pragma once
 
+#include <optional>
+
 #include "lib/material/bsdf.h"
 #include "lib/material/seen_side.h"
 #include "lib/trace/trace.h"
@@ -18,6 +20,23 @@ struct ShadingPoint : SeenSide {
         surface(point),
         bsdf(material, dot(point.normal_geometric, wo) > 0),
         eye(bsdf.along(wo_local)) {}
+
+  /// f_S [1/sr] of light from wi towards the eye, with the light that the lobes send to wi's image (ShadingFrame):
+  /// times wi's cosine to the shading normal it is the radiance per irradiance. wi is on the same side by both normals.
+  Rgb eval_specular(const Bsdf::Direction& wi) const {
+    const Rgb f = bsdf.eval_specular(wi, eye);
+    const std::optional<Vec3> image = frame.image_in_lobe(wi.w);
+    return image ? f + bsdf.eval_specular(bsdf.along(*image), eye) * (image->z / wi.w.z) : f;
+  }
+  /// Bsdf::pdf_specular() and Bsdf::gloss_density() of Scattered, which draws wi and its image (unit, local frame).
+  float pdf_specular(Vec3 wi) const {
+    const std::optional<Vec3> image = frame.image_in_lobe(wi);
+    return bsdf.pdf_specular(wi, eye) + (image ? bsdf.pdf_specular(*image, eye) : 0);
+  }
+  float gloss_density(Vec3 wi) const {
+    const std::optional<Vec3> image = frame.image_in_lobe(wi);
+    return bsdf.gloss_density(wi, eye) + (image ? bsdf.gloss_density(*image, eye) : 0);
+  }
 };
 
 }  // namespace tempolux

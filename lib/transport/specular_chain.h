@@ -15,9 +15,15 @@ struct Scattered {
   Bsdf::Sample sample;
   Vec3 travel{};  ///< direction of the path after the event; unit, scene space
 
-  /// Draws an event (Bsdf::sample). `frame` and `eye` are those of the side that the path comes from.
-  Scattered(const Bsdf& bsdf, const Frame& frame, const Bsdf::Direction& eye, float u_lobe, Vec2 u)
-      : sample(bsdf.sample(eye, u_lobe, u)), travel(frame.to_world(sample.wi)) {}
+  /// Draws an event (Bsdf::sample). `frame` and `eye` are those of the side that the path comes from. An event S never
+  /// leads to the wrong side of the triangle (ShadingFrame); its pdf is ShadingPoint::pdf_specular.
+  Scattered(const Bsdf& bsdf, const ShadingFrame& frame, const Bsdf::Direction& eye, float u_lobe, Vec2 u)
+      : sample(bsdf.sample(eye, u_lobe, u)), travel(frame.to_world(sample.wi)) {
+    if (sample.diffuse || sample.straight || frame.flat() || is_black(sample.weight)) return;
+    if (!frame.on_wrong_side(travel, sample.transmitted)) return;
+    travel = frame.image(travel);
+    sample.wi = frame.to_local(travel);
+  }
   Scattered(const ShadingPoint& x, float u_lobe, Vec2 u) : Scattered(x.bsdf, x.frame, x.eye, u_lobe, u) {}
   /// Updates the solids that the path is inside. front: the side of the surface from which the path came.
   void pass(const SurfacePoint& point, const MaterialValues& material, bool front, Inside& inside) const {
