@@ -127,7 +127,7 @@ trace other.glb --frame 3 --map dynamic --static lamp.paths -o fine.photons || b
 refuses 'frame 30 lies in 24 to 47' trace "$scene" --frame 30 --map dynamic --static box.paths -o refused
 refuses 'made for another state' trace mirror.glb --map dynamic --static box.paths -o refused
 refuses 'needs --static' trace "$scene" --map dynamic -o refused
-refuses 'the static map has it' trace "$scene" --map dynamic --static box.paths --photons 10 -o refused
+refuses 'takes it from the static map' trace "$scene" --map dynamic --static box.paths --photons 10 -o refused
 refuses 'only with --map dynamic' trace "$scene" --static box.paths -o refused
 refuses 'only with --map static' trace "$scene" --paths p.paths -o refused
 refuses 'is a part of the scene' irradcache-build points "$scene" --photons box.s.photons -o refused
