@@ -165,9 +165,9 @@ int last_change(const Scene& scene, const TimeOptions& options) {
 std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan, int camera_node,
                                            const MediaHash& media) {
   std::vector<PlannedSegment> pieces;
+  if (media) return pieces;
   const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), plan.time);
   const bool endless = last == std::numeric_limits<int>::max();
-  if (endless && media) return pieces;
   for (const int frame : {0, endless ? 0 : last / 2, endless ? 0 : last}) {
     if (!pieces.empty() && frame <= pieces.back().last) continue;
     const auto known = std::ranges::find_if(

@@ -60,9 +60,9 @@ struct Plan {
   int last_frame = 0;        ///< last frame of the animation; without animation a very large number
   std::vector<PlannedSegment> segments;  ///< by first frame
   /// The segments that stand for the shot, by which all segments decide: those at the animation's first frame, middle
-  /// and last frame, each once. Empty: the animation's end is not known, because media change and nothing else does.
+  /// and last frame, each once. Empty in scenes with media, whose files need not exist at all frames of the animation.
   std::vector<PlannedSegment> shot;
-  bool media = false;                    ///< true if the scene has media
+  bool media = false;  ///< true if the scene has media
   std::vector<std::string> warnings;
 
   /// The segment that holds a frame of the animation. Throws std::out_of_range if it is not in the plan.

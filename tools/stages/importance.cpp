@@ -15,7 +15,8 @@ const std::vector<formats::ViewSphere>& Importance::at(int frame) {
   if (!own_) return given_;
   const int inside = frame_in_animation(input_.scene(), frame, input_.time());
   const Segment segment = segment_of(input_.scene(), inside, input_.time());
-  const auto [found, is_new] = found_.try_emplace(segment.first);  // without media all segments of a shot have one view
+  const auto [found, is_new] =
+      found_.try_emplace(segment.first);  // segments of a shot without media have the same view
   if (!is_new) return found->second;
   const int camera = input_.scene().camera_node(tool_.common().camera);
   const int asked[] = {inside};
@@ -24,7 +25,8 @@ const std::vector<formats::ViewSphere>& Importance::at(int frame) {
                            [&](int f) { return input_.emission(f); }, camera};
   const Wish usual;  // default picture size, of which only the aspect ratio counts
   StaticTree tree;
-  const std::string text = view_of(frames_of(plan.shot), usual.width, usual.height, source, tree);
+  const std::string text =
+      view_of(frames_of(input_.has_media() ? plan.segments : plan.shot), usual.width, usual.height, source, tree);
   if (!text.empty()) found->second = formats::parse_view(text, "what the camera sees");
   return found->second;
 }
