@@ -106,15 +106,16 @@ def lamp_out(s):
 
 
 def over_time(s, scene, size=(48, 36)):
-    """Frames 0 .. 3 with records that keep their incoming light from frame to frame, and with records of each frame alone."""
+    """Frames 0 .. 3 with records that keep their incoming light from frame to frame, and with records of each frame alone,
+    at the same places: irradcache-build has others, with other noise."""
     folder = s.path("")
     os.mkdir(folder)
     maps, kept, fresh = [], [], []
     for f in range(4):
         maps.append(s.photons(scene, "20k", "--frame", f, "--kinds", "caustic,indirect")["path"])
         s.done(s.run("irradcache-build", "points", scene, "--frame", f, "--photons", maps[f], "--point-count", "2k", "-o", f"{folder}/p{f}.irradpoints"))
-        s.done(s.run("irradcache-build", "records", scene, "--frame", f, "--points", f"{folder}/p{f}.irradpoints", "--size", f"{size[0]}x{size[1]}",
-                     "-o", f"{folder}/a{f}.irradcache"))
+        s.done(s.run("gather-temporal", "final", scene, "--frame", f, "--points", f"{folder}/p{f}.irradpoints", "--size", f"{size[0]}x{size[1]}",
+                     "-o", f"{folder}/a{f}.radsamples", "--cache", f"{folder}/a{f}.irradcache"))
     s.done(s.run("gather-temporal", "final", scene, "--frames", "0-3", "--points", f"{folder}/p#.irradpoints", "--size", f"{size[0]}x{size[1]}",
                  "-o", f"{folder}/s#.radsamples", "--cache", f"{folder}/k#.irradcache"))
     s.done(s.run("tempolux-info", "--check", *(f"{folder}/{k}{f}.{end}" for f in range(4) for k, end in (("s", "radsamples"), ("k", "irradcache")))))
