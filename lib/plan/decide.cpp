@@ -30,11 +30,16 @@ constexpr std::size_t kMostViews = 16;
 /// Fewest states of light for which computing the light of the static scene first pays: it is computed once and every
 /// state follows from it.
 constexpr std::size_t kFewestStates = 3;
-/// A segment departs from the shot's way to light if that way needs more than this many times the work of the segment's
-/// best; departs() allows for the pilots' error besides.
+/// A segment departs from the shot's way to light if the shot's way needs more than this many times the work of the
+/// segment's best way; departs() allows for the pilots' error besides.
 constexpr double kDeparture = 1.3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
+
+// Stages by which reasons are found again.
+constexpr const char* kRecordsReason = "irradcache-build records";
+constexpr const char* kMovingReason = "photon-trace --map dynamic";
+constexpr const char* kSplitReason = "photonmap-split";
 
 CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wish& wish) {
   return CameraView(frame, source.camera_node, wish.width, wish.height);
@@ -183,10 +188,10 @@ std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& m
   return looks;
 }
 
-/// The way `wanted` among the ways of a frame; null if it is not there.
-const Way* find_way(const std::vector<Way>& ways, const Decisions& wanted) {
-  const auto found = std::ranges::find_if(
-      ways, [&](const Way& way) { return way.method == wanted.indirect && way.map == wanted.caustic_map; });
+/// The way with a method and a source of caustic light; null if it is not there, as in a frame that sees no Lambert
+/// lobe.
+const Way* find_way(const std::vector<Way>& ways, IndirectMethod method, bool map) {
+  const auto found = std::ranges::find_if(ways, [&](const Way& way) { return way.method == method && way.map == map; });
   return found == ways.end() ? nullptr : &*found;
 }
 
@@ -194,22 +199,24 @@ const Way* find_way(const std::vector<Way>& ways, const Decisions& wanted) {
 bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const Decisions& shot) {
   const std::vector<Way> ways = joined_ways(looks);
   const std::optional<Way> best = best_of(ways, wish, media);
-  const Way* const same = find_way(ways, shot);
   if (!best) return false;
-  if (!same || !is_allowed(*same, wish, media)) return true;
-  if (same->never > best->never || same->uncertain > best->uncertain) return true;
-  double sum = 0, squares = 0;
+  const Way* const of_shot = find_way(ways, shot.indirect, shot.caustic_map);
+  if (!of_shot || !is_allowed(*of_shot, wish, media)) return true;
+  if (of_shot->never > best->never || of_shot->uncertain > best->uncertain) return true;
+  // Mean and standard error of log(score of the shot's way / score of the best way) over the frames.
+  double n = 0, sum = 0, squares = 0;
   for (const Look& look : looks) {
-    const Way* const here = find_way(look.ways, shot);
-    const auto other = std::ranges::find_if(
-        look.ways, [&](const Way& way) { return way.method == best->method && way.map == best->map; });
-    const double ratio = std::log(std::max(here->score(), 1e-300) / std::max(other->score(), 1e-300));
+    const Way *const shots = find_way(look.ways, shot.indirect, shot.caustic_map), *const bests =
+                                                                                       find_way(look.ways, best->method,
+                                                                                                best->map);
+    if (!shots || !bests) continue;
+    const double ratio = std::log(std::max(shots->score(), 1e-300) / std::max(bests->score(), 1e-300));
+    n += 1;
     sum += ratio;
     squares += ratio * ratio;
   }
-  const double n = double(looks.size()), mean = sum / n,
-               error = n > 1 ? std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1)) : 0;
-  return same->score() > best->score() * kDeparture * std::exp(2 * error);
+  const double error = n > 1 ? std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1)) : 0;
+  return of_shot->score() > best->score() * kDeparture * std::exp(2 * error);
 }
 
 /// Sets the decisions about indirect light so that they suit every measured frame.
@@ -230,7 +237,7 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
   d.record_rays = way.rays;
   d.pixel_error = wish.pixel_error * way.pixel_error;
   if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
-  d.reasons.push_back({"irradcache-build records", words});
+  d.reasons.push_back({kRecordsReason, words});
 }
 
 void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
@@ -242,8 +249,7 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
         "--split on with --moving records: records that follow from static records have no bright points; use "
         "--moving time or anew");
   d.split = choice.split && d.moving != MovingMethod::records;
-  d.reasons.push_back(
-      {"photonmap-split", choice.split && !d.split ? "records follow from static records" : choice.because});
+  d.reasons.push_back({kSplitReason, choice.split && !d.split ? "records follow from static records" : choice.because});
 }
 
 /// Number of pictures that share records: the largest power of two whose joint records cost at most twice as much as
@@ -257,8 +263,7 @@ int pictures_together(std::size_t pictures, const Decisions& d) {
 /// Decides which parts of a frame's light (photons, points, records) are derived from the light of the static scene.
 void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                    StaticTree& tree, Decisions& d) {
-  const std::string name = "photon-trace --map dynamic";
-  const auto anew = [&](const std::string& because) { d.reasons.push_back({name, because}); };
+  const auto anew = [&](const std::string& because) { d.reasons.push_back({kMovingReason, because}); };
   const std::vector<int> states = segment.states();
   if (!d.points() || states.size() < kFewestStates)
     return anew(words(states.size(), "state") + " of light in the segment");
@@ -277,7 +282,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
-  d.reasons.push_back({name, choice.because});
+  d.reasons.push_back({kMovingReason, choice.because});
 }
 
 /// Decides whether warping can make pictures between key frames.
@@ -373,52 +378,75 @@ Decisions begin(const PlannedSegment& segment, bool media) {
   return d;
 }
 
-/// Decides about the light of frames `d.looked`. `segment` supplies the pictures and the movers, `view_frames` the frames
-/// from which view_of() looks.
-void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
-                  const SceneSource& source, Decisions& d) {
+/// What pilots found in the frames `d.looked`.
+struct LookedAt {
   StaticTree tree;
-  if (wish.method == FrameMethod::preview) return decide_preview(segment, view_frames, wish, source, tree, d);
   std::unique_ptr<FramePilot> middle;
-  const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
-  join(look_at({d.looked, wish, media, pilot_of, {}}, middle), wish, media, d);
-  if (d.records()) d.new_share = middle->new_share(segment);
+  std::vector<Look> looks;
+
+  /// also: a method that must be measured, too.
+  LookedAt(const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
+           std::optional<IndirectMethod> also) {
+    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
+    looks = look_at({d.looked, wish, media, pilot_of, also}, middle);
+  }
+};
+
+/// Decides how many pictures share records.
+void decide_together(const PlannedSegment& segment, const FramePilot& middle, Decisions& d) {
+  if (d.records()) d.new_share = middle.new_share(segment);
   d.together = pictures_together(segment.pictures().size(), d);
-  decide_moving(segment, wish, media, source, tree, d);
-  decide_split(*middle, wish, d);
-  if (d.photons()) d.view = view_of(view_frames, wish.width, wish.height, source, tree);
 }
 
-/// Takes the shot's decisions about light where they suit the segment.
+/// Decides about the light by what pilots found; `segment` supplies the pictures and the movers.
+void decide_by_looks(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
+                     LookedAt& looked, Decisions& d) {
+  join(looked.looks, wish, media, d);
+  decide_together(segment, *looked.middle, d);
+  decide_moving(segment, wish, media, source, looked.tree, d);
+  decide_split(*looked.middle, wish, d);
+}
+
+/// Decides about the light without a shot. `view_frames`: the frames from which view_of() looks.
+void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
+                  const SceneSource& source, Decisions& d) {
+  if (wish.method == FrameMethod::preview) {
+    StaticTree tree;
+    return decide_preview(segment, view_frames, wish, source, tree, d);
+  }
+  LookedAt looked(wish, media, source, d, {});
+  decide_by_looks(segment, wish, media, source, looked, d);
+  if (d.photons()) d.view = view_of(view_frames, wish.width, wish.height, source, looked.tree);
+}
+
+/// Copies the shot's decisions about the light.
+void copy_shot(const PlannedSegment& segment, const Decisions& shot, const LookedAt& looked, Decisions& d) {
+  d.indirect = shot.indirect;
+  d.caustic_map = shot.caustic_map;
+  d.record_rays = shot.record_rays;
+  d.pixel_error = shot.pixel_error;
+  d.photon_paths = shot.photon_paths;
+  if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
+  d.reasons.push_back({kRecordsReason, "as in the whole shot; here " + because(joined_ways(looked.looks))});
+  decide_together(segment, *looked.middle, d);
+  if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
+  if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
+  for (const char* stage : {kMovingReason, kSplitReason}) {
+    const auto reason = std::ranges::find(shot.reasons, stage, &Reason::stage);
+    if (reason != shot.reasons.end()) d.reasons.push_back({stage, "as in the whole shot; there " + reason->because});
+  }
+}
+
+/// Takes the shot's decisions about the light where they suit the segment.
 void take_from_shot(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                     const Decisions& shot, Decisions& d) {
-  StaticTree tree;
-  std::unique_ptr<FramePilot> middle;
-  const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
-  const std::vector<Look> looks = look_at({d.looked, wish, media, pilot_of, shot.indirect}, middle);
-  if (departs(looks, wish, media, shot)) {
-    join(looks, wish, media, d);
-    d.reasons.back().because += "; the shot's way costs more here by more than pilots err";
-    if (d.records()) d.new_share = middle->new_share(segment);
-    d.together = pictures_together(segment.pictures().size(), d);
-    decide_moving(segment, wish, media, source, tree, d);
-    decide_split(*middle, wish, d);
+  LookedAt looked(wish, media, source, d, shot.indirect);
+  if (departs(looked.looks, wish, media, shot)) {
+    decide_by_looks(segment, wish, media, source, looked, d);
+    std::ranges::find(d.reasons, kRecordsReason, &Reason::stage)->because +=
+        "; the shot's way costs more here by more than pilots err";
   } else {
-    d.indirect = shot.indirect;
-    d.caustic_map = shot.caustic_map;
-    d.record_rays = shot.record_rays;
-    d.pixel_error = shot.pixel_error;
-    d.photon_paths = shot.photon_paths;
-    if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
-    d.reasons.push_back({"irradcache-build records", "as in the whole shot; here " + because(joined_ways(looks))});
-    if (d.records()) d.new_share = middle->new_share(segment);
-    d.together = pictures_together(segment.pictures().size(), d);
-    if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
-    if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
-    for (const char* stage : {"photon-trace --map dynamic", "photonmap-split"}) {
-      const auto reason = std::ranges::find(shot.reasons, stage, &Reason::stage);
-      if (reason != shot.reasons.end()) d.reasons.push_back({stage, "as in the whole shot; there " + reason->because});
-    }
+    copy_shot(segment, shot, looked, d);
   }
   if (d.photons()) d.view = shot.view;
 }

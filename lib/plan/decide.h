@@ -50,7 +50,8 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
 /// points lie everywhere. Only the ratio of `width` and `height` counts. `tree`: the static scene's tree, which is
 /// built if it is empty.
 std::string view_of(const std::vector<int>& frames, int width, int height, const SceneSource& source, StaticTree& tree);
-/// Frames from the first one of the first piece to the last one of the last piece, for view_of().
+/// All frames between the first frame of the first piece and the last frame of the last piece, both included. view_of()
+/// looks at some of these frames.
 std::vector<int> frames_of(std::span<const PlannedSegment> pieces);
 
 /// Hash of everything that decide() depends on: equal keys mean equal decisions, which a file can keep.

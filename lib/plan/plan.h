@@ -59,8 +59,8 @@ struct Plan {
   std::map<int, int> shows;  ///< for each frame asked for: the frame itself, or the closest frame of the animation
   int last_frame = 0;        ///< last frame of the animation; without animation a very large number
   std::vector<PlannedSegment> segments;  ///< by first frame
-  /// The segments that stand for the shot, by which all segments decide: those at the animation's first frame, middle
-  /// and last frame, each once. Empty in scenes with media, whose files need not exist at all frames of the animation.
+  /// The segments that stand for the shot: the segments that hold the animation's first, middle and last frame, each
+  /// once. Decisions of the shot follow from these segments. Empty in scenes with media, whose files need not exist at all frames of the animation.
   std::vector<PlannedSegment> shot;
   bool media = false;  ///< true if the scene has media
   std::vector<std::string> warnings;
