@@ -28,20 +28,21 @@ class Placement {
  public:
   Placement(const FinalGather& gather, const RecordSource* source, const PlacementOptions& options, RecordStore& store,
             GatherCounts& counts)
-      : gather_(gather),
-        again_(gather.with_seed(gather.seed() ^ kSecondGather)),
-        source_(source),
-        options_(options),
-        store_(store),
-        counts_(counts) {}
+      : gather_(gather), source_(source), options_(options), store_(store), counts_(counts) {}
 
   bool is_covered(const SeenPoint& seen) const {
     return store_.covers(seen.surface.position, seen.normal, options_.min_weight);
   }
 
-  /// Adds the records that the points still need. checked: every fourth record is gathered twice.
-  void add_batch(std::span<const SeenPoint> points, bool checked) {
-    std::vector<std::optional<IrradianceRecord>> records(points.size()), again(points.size());
+  /// Adds the records that the points still need, in batches.
+  void add(std::span<const SeenPoint> points) {
+    for (std::size_t start = 0; start < points.size(); start += kPlacedTogether)
+      add_batch(points.subspan(start, std::min(kPlacedTogether, points.size() - start)));
+  }
+
+ private:
+  void add_batch(std::span<const SeenPoint> points) {
+    std::vector<std::optional<IrradianceRecord>> records(points.size());
     counts_ += parallel_sum<GatherCounts>(points.size(), 8, [&](std::size_t i, GatherCounts& counts) {
       const SeenPoint& seen = points[i];
       if (is_covered(seen)) return;
@@ -49,31 +50,15 @@ class Placement {
         records[i] = source_->gather(seen, i, counts);
         return;
       }
-      records[i] = gathered(gather_, seen, counts);
-      if (checked && i % kCheckedOneIn == 0) again[i] = gathered(again_, seen, counts);
+      records[i] = gather_.gather(seen.surface, seen.normal, counts);
+      limit_radius(*records[i], seen.footprint, options_);
       gather_.look_around(seen.surface, *records[i]);
     });
     for (std::size_t i = 0; i < records.size(); ++i)
-      if (records[i] && store_.add(*records[i])) {
-        if (source_ && source_->added) source_->added(i);
-        if (again[i]) count_twice(*records[i], *again[i], 1, counts_);
-      }
-  }
-  void add(std::span<const SeenPoint> points, bool checked) {
-    for (std::size_t start = 0; start < points.size(); start += kPlacedTogether)
-      add_batch(points.subspan(start, std::min(kPlacedTogether, points.size() - start)), checked && !source_);
+      if (records[i] && store_.add(*records[i]) && source_ && source_->added) source_->added(i);
   }
 
- private:
-  IrradianceRecord gathered(const FinalGather& gather, const SeenPoint& seen, GatherCounts& counts) const {
-    IrradianceRecord record = gather.gather(seen.surface, seen.normal, counts);
-    limit_radius(record, seen.footprint, options_);
-    return record;
-  }
-
-  static constexpr std::size_t kCheckedOneIn = 4;  ///< one record in this many is gathered twice
   const FinalGather& gather_;
-  const FinalGather again_;
   const RecordSource* source_;
   const PlacementOptions& options_;
   RecordStore& store_;
@@ -88,7 +73,7 @@ struct Looked {
   /// Covers the points of `pixels`, in a fixed shuffled order. look(pixel) returns the raster position of a pixel;
   /// note(pixel, seen) receives its point.
   template <class LookAt, class Note>
-  void cover(const std::vector<std::size_t>& pixels, bool checked, const LookAt& look, const Note& note) const {
+  void cover(const std::vector<std::size_t>& pixels, const LookAt& look, const Note& note) const {
     struct Open {
       std::uint64_t key;  // sort key: hash of the pixel
       std::size_t pixel;
@@ -105,7 +90,7 @@ struct Looked {
               [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
     std::vector<SeenPoint> points;
     for (const Open& o : open) points.push_back(o.seen);
-    placement.add(points, checked);
+    placement.add(points);
   }
 };
 
@@ -117,15 +102,6 @@ float radius_by_distances(const IrradianceRecord& record, float footprint, const
 }
 
 }  // namespace
-
-void count_twice(const IrradianceRecord& once, const IrradianceRecord& again, double pixels, GatherCounts& counts) {
-  const Rgbd a(once.irradiance), b(again.irradiance), n(once.noise), m(again.noise);
-  const double level = channel_mean(a + b);
-  if (!(level > 0)) return;
-  const double seen = pixels * std::pow(level, -7.0 / 6) / 2;
-  counts.twice_variance += seen * channel_mean((a - b) * (a - b));
-  counts.twice_noise += seen * channel_mean(n * n + m * m);
-}
 
 float noise_factor(const GatherCounts& counts) {
   return counts.twice_noise > 0 ? float(std::sqrt(counts.twice_variance / counts.twice_noise)) : 1.0f;
@@ -149,7 +125,7 @@ void limit_radius(IrradianceRecord& record, float footprint, const PlacementOpti
 void cover_points(const FinalGather& gather, const RecordSource* source, const PlacementOptions& options,
                   std::span<const SeenPoint> points, RecordStore& store, GatherCounts& counts) {
   const std::size_t before = store.records().size();
-  Placement(gather, source, options, store, counts).add(points, false);
+  Placement(gather, source, options, store, counts).add(points);
   store.complete_noise(before, noise_factor(counts));
 }
 
@@ -168,14 +144,14 @@ std::size_t place_records(const FinalGather& gather, const RecordPicture& pictur
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
     looked.cover(
-        pixels, stride == kCoarsest, [&](std::size_t pixel) { return centre_look(pixel, width); },
+        pixels, [&](std::size_t pixel) { return centre_look(pixel, width); },
         [&](std::size_t pixel, const SeenPoint& seen) { glimpses[pixel] = Glimpse(seen); });
     advance(pixels.size());
   }
   const std::vector<std::size_t> edges = edge_pixels(glimpses, width, height);
   for (std::uint32_t k = 0; k < kEdgeLooks; ++k) {
     const auto look = [&](std::size_t pixel) { return edge_look(pixel, width, k); };
-    looked.cover(edges, false, look, [](std::size_t, const SeenPoint&) {});
+    looked.cover(edges, look, [](std::size_t, const SeenPoint&) {});
     advance(edges.size() / kEdgeLooks);
   }
   store.complete_noise(before, noise_factor(counts));

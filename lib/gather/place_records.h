@@ -33,8 +33,6 @@ struct RecordSource {
 /// Places of a batch. Records of one batch do not cover each other's places. Half and twice the value change the seen
 /// error less than another seed does (docs/notebook/constants.md).
 inline constexpr std::size_t kPlacedTogether = 256;
-/// Changes the seed of the second gather of a record that is gathered twice.
-inline constexpr std::uint64_t kSecondGather = 0x616761696eull;
 
 /// A picture that needs records.
 struct RecordPicture {
@@ -51,10 +49,7 @@ struct RecordPicture {
 /// an edge or behind glass, so that a frame's samples find records there, too. Same records for any number of threads.
 /// Returns the number of added records.
 ///
-/// One in four records of the coarsest lattice is gathered twice, with independent random numbers. Half of the squared
-/// difference between both results estimates the true variance of one result. The `noise` of all added records is
-/// multiplied by the square root of (true variance / mean square of `noise`). Both values are weighted as errors are
-/// seen (compare()) and summed in `counts` over all calls. Records of a `source` are gathered once.
+/// The noise of the added records is completed by noise_factor(counts).
 std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
                           RecordStore& store, GatherCounts& counts);
 
@@ -64,12 +59,6 @@ std::size_t place_records(const FinalGather& gather, const RecordPicture& pictur
 void cover_points(const FinalGather& gather, const RecordSource* source, const PlacementOptions& options,
                   std::span<const SeenPoint> points, RecordStore& store, GatherCounts& counts);
 
-/// Adds the variance and the noise of a record that was gathered twice to `counts`. Both are weighted as a viewer sees
-/// errors, by the squared slope of the sRGB curve, which is proportional to level^(-7/6), and by `pixels`, the part of
-/// the picture that the record lights. Errors of gradients do not count: with them, at the mean distance of
-/// interpolation, the estimated noise of a hut's picture was 1.12 times the difference of two seeds, and 1.02 times
-/// without them.
-void count_twice(const IrradianceRecord& once, const IrradianceRecord& again, double pixels, GatherCounts& counts);
 /// Factor by which counted noise falls short of the true noise: the root of variance over noise squared; 1 if no record
 /// was gathered twice.
 float noise_factor(const GatherCounts& counts);

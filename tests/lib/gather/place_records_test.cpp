@@ -19,34 +19,6 @@ using test::HandMadeScene;
 using test::matte;
 using test::pixel_by_pixel;
 
-/// Two sets of records with independent random numbers: half of the squared difference of their interpolated light is
-/// the variance of one, and so is the mean square of the interpolated noise. A frame's noise is to be right within 1.3,
-/// so mean squares may differ by 1.3^2. Chance adds little: the ratio of 12 records that are gathered twice errs by
-/// sqrt(3/12) = 50 %, over 40 sets by 8 %.
-TEST(PlaceRecords, TheirNoiseIsThatBetweenSeeds) {
-  const Room room;
-  double said = 0, measured = 0;
-  const PixelView views = pixel_by_pixel([&](float x, float y, const PathRandom*) { return room.see(x, y, 128, 96); });
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    std::array<RecordStore, 2> stores;
-    for (std::uint64_t i = 0; i < 2; ++i) {
-      GatherCounts counts;
-      place_records(room.gather->with_seed(2 * seed + i), {views, 128, 96}, {}, stores[i], counts);
-    }
-    for (int y = 2; y < 96; y += 4)
-      for (int x = 2; x < 128; x += 4) {
-        const auto seen = room.see(float(x), float(y), 128, 96);
-        const auto a = stores[0].interpolate(seen->surface.position, seen->normal),
-                   b = stores[1].interpolate(seen->surface.position, seen->normal);
-        const double difference = double(a.irradiance.g) - double(b.irradiance.g);
-        measured += difference * difference / 2;
-        said += double(a.noise.g * a.noise.g + b.noise.g * b.noise.g) / 2;
-      }
-  }
-  EXPECT_LT(said / measured, 1.3 * 1.3);
-  EXPECT_GT(said / measured, 1 / (1.3 * 1.3));
-}
-
 TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   const Room room;
   RecordStore store;
