@@ -11,8 +11,8 @@ namespace tempolux {
 /// For whom an advice is written: options of the tools, or variables of make.
 enum class AdviceFor { tools, make };
 
-/// What mends the bias of a layer, which irradiance points, records and photons cause: "more points (POINTS=...) mend
-/// it". "" for layers that frames sample without bias.
+/// Advice to users on how to reduce the bias of a layer, such as "more points (POINTS=...) mend it". Irradiance points,
+/// records and photons cause bias. Layers that frames sample without bias get "".
 inline std::string advice_on_bias(Layer layer, AdviceFor reader) {
   const bool make = reader == AdviceFor::make;
   const std::string photons = make ? "more photons (PHOTONS)" : "more photons (photon-trace --photons)";

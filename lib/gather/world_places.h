@@ -26,7 +26,7 @@ float spacing_of(int spacing_class);
 /// A place on one side of a surface.
 struct WorldPlace {
   SurfacePoint surface;
-  Vec3 side;              ///< geometric normal on this side, unit
+  Vec3 normal;            ///< geometric normal on this side, unit
   std::uint64_t key = 0;  ///< hash of class, column, number on the line and side; not 0
 };
 

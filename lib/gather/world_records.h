@@ -17,7 +17,7 @@
 namespace tempolux {
 
 /// A seen point, reduced to what placing needs, and the look that finds it again.
-struct WantedLight {
+struct WantedPoint {
   WantedPlace place;
   int level = 0;  ///< log2 of the footprint, rounded: places of one level have records of the same radii
   int frame = 0;
@@ -27,7 +27,7 @@ struct WantedLight {
 };
 
 /// The points of all pixel centres, and of the further looks of edge pixels, in a fixed order.
-std::vector<WantedLight> wanted_light(const PixelView& view, int frame, int width, int height);
+std::vector<WantedPoint> wanted_points(const PixelView& view, int frame, int width, int height);
 
 /// Places records in three steps: want() for all points that cameras see, choose(), and gather().
 ///
@@ -42,7 +42,7 @@ class WorldRecords {
   WorldRecords(const FinalGather& gather, const Tracer& tracer, const PlacementOptions& options);
 
   /// Adds seen points; called once a camera.
-  void want(std::span<const WantedLight> wanted);
+  void want(std::span<const WantedPoint> wanted);
   /// Decides which places get records, without gathering; adds its distance rays to `counts`.
   void choose(GatherCounts& counts);
 
@@ -55,7 +55,7 @@ class WorldRecords {
 
   /// Wanted places where the weights of the records in `store` add up to less than `weight`. These are on movers, and
   /// on small surfaces that no line meets. Ascending by frame, in a random order within a frame.
-  std::vector<WantedLight> gaps(const RecordStore& store, float weight) const;
+  std::vector<WantedPoint> gaps(const RecordStore& store, float weight) const;
 
  private:
   struct Member {
@@ -67,7 +67,7 @@ class WorldRecords {
   };
   struct Level {
     /// Element c: one wanted place a cell of class 2 level + c and direction.
-    std::vector<std::vector<WantedLight>> wanted{1};
+    std::vector<std::vector<WantedPoint>> wanted{1};
     RecordStore placed;  ///< the members' records
     std::vector<Member> members;
   };

@@ -41,13 +41,13 @@ void for_each_camera(const Placement& place, const RecordCameras& cameras, const
 }
 
 /// Covers the places that the records of the world leave open.
-void close_gaps(const Placement& place, const RecordCameras& cameras, std::span<const WantedLight> gaps,
+void close_gaps(const Placement& place, const RecordCameras& cameras, std::span<const WantedPoint> gaps,
                 RecordStore& store, GatherCounts& counts) {
   PlacementOptions options = place.options;
   options.min_weight *= kGapWeight;
   for_each_camera(place, cameras, [&](int number, const PixelView& view) {
     std::vector<SeenPoint> points;
-    for (const WantedLight& gap : std::ranges::equal_range(gaps, number, {}, &WantedLight::frame))
+    for (const WantedPoint& gap : std::ranges::equal_range(gaps, number, {}, &WantedPoint::frame))
       if (const auto seen = view(gap.where(cameras.width))) points.push_back(*seen);
     cover_points(place.gather, place.source, options, points, store, counts);
   });
@@ -61,7 +61,7 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
   };
   double looked = 0;
   for_each_camera(place, cameras, [&](int number, const PixelView& view) {
-    world.want(wanted_light(view, number, cameras.width, cameras.height));
+    world.want(wanted_points(view, number, cameras.width, cameras.height));
     advance(0.2 * ++looked / double(cameras.frames.size()));
   });
   world.choose(counts);

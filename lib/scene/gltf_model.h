@@ -64,9 +64,11 @@ struct ExtensionReader {
   const tinygltf::Value& object;
   std::string place;  ///< of the object in the file, for messages
 
-  /// A finite number; `fallback` if the key is missing, and with a warning for anything else.
+  /// Reads a finite number. Returns `fallback` if the key is missing. Any other value gets a warning and gives
+  /// `fallback`.
   double number(const char* key, double fallback) const;
-  /// An array of `count` finite numbers; empty if the key is missing, and with a warning for anything else.
+  /// Reads an array of `count` finite numbers. Returns an empty array if the key is missing. Any other value gets a
+  /// warning and gives an empty array.
   std::vector<double> numbers(const char* key, std::size_t count) const;
 };
 

@@ -152,8 +152,8 @@ struct Camera {
 /// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them).
 struct CameraExtras {
   int first_frame = 0;
-  /// Of each row of the table in camera_properties.h: one number for all frames, or one per frame from `first_frame`
-  /// on; empty: the file does not say.
+  /// One list for each row of the table in camera_properties.h: a single number for all frames, or one number per frame
+  /// from `first_frame` on; empty: the file does not have the property.
   std::vector<std::vector<double>> lists;
 
   /// Sets lens and shutter of a camera to their values at a frame; frames outside of a list have its first or last one.
@@ -205,8 +205,8 @@ struct Node {
   CameraExtras camera_extras;    ///< of a node with a camera
   /// KHR_node_visibility at rest. A node is seen if it and all its ancestors are visible.
   bool visible = true;
-  /// True if the node is hidden at all times: it or an ancestor is not visible at rest, and no animation shows it. The
-  /// reader leaves out its mesh and light.
+  /// True if the node is hidden at all times: the node or an ancestor is not visible at rest, and no animation makes it
+  /// visible. The reader leaves out the node's mesh and light.
   bool never_seen = false;
 };
 

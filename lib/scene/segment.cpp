@@ -96,7 +96,7 @@ std::string reason(const Scene& scene, const Animator& animator, const Segment& 
   return node.parent < 0 ? "its shape" : "parent " + name_of(scene.nodes[std::size_t(node.parent)]);
 }
 
-/// Marks the nodes that are hidden at all frames, and those that are hidden at some frames only, which move.
+/// Marks the nodes that are hidden at all frames. Nodes that are hidden at some frames only are marked as movers.
 void set_hidden(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
   const std::vector<std::uint8_t> first = animator.seen(segment.first / fps);
   segment.node_hidden.resize(first.size());

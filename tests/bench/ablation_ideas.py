@@ -55,7 +55,7 @@ IDEAS = (
          (("lib/gather/place_records.cpp", "  for (Vec3& g : record.translational) g *= float(kept);\n", "  record.translational = record.rotational = {};\n"),)),
     Idea("looks at edges", "four more places in pixels at edges and behind glass get records", "cache",
          (("lib/gather/place_records.cpp", "k < kEdgeLooks; ++k", "k < 0 * kEdgeLooks; ++k"),
-          ("lib/gather/world_records.cpp", "parallel_found<WantedLight>(edges.size() * kEdgeLooks,", "parallel_found<WantedLight>(edges.size() * 0,"))),
+          ("lib/gather/world_records.cpp", "parallel_found<WantedPoint>(edges.size() * kEdgeLooks,", "parallel_found<WantedPoint>(edges.size() * 0,"))),
     Idea("no records in cracks", "a place that sees surfaces closer than a pixel gets no record", "cache",
          (("lib/gather/world_records.cpp", "  if (member.range < seen.footprint) return std::nullopt;\n", ""),)),
     Idea("clearance", "records know how far they see along their surface, so that none answers across a wall", "cache",
