@@ -28,6 +28,8 @@ Json read_json(const std::string& path) {
     throw InputError(path + ": byte " + std::to_string(error.byte) + ": not JSON; make it anew");
   } catch (const Json::out_of_range&) {
     throw InputError(path + ": a number is too large for 64 bits of floating point");
+  } catch (const std::ios_base::failure&) {  // a folder can be opened, and fails at its first byte
+    throw InputError(path + ": cannot be read; is it a folder?");
   }
 }
 

@@ -121,6 +121,10 @@ save("report", "manifest.json", json.dumps({
     "runs": [{"scene": "s", "curve": "c", "x": 4, "label": "l", "parameters": {"p": 1}, "stats": ["input.json"],
               "comparison": "input.json", "image": "a.png"}],
     "points": [{"scene": "s", "label": "l", "cpu_s": 1, "rmse": 0.1}], "references": {"s": "r.png"}}))
+save("report", "folder.json", json.dumps({
+    "schema": "tempolux.report", "version": "1.0",
+    "runs": [{"curve": "c", "stats": [""]}]}))
+save("report", "version-of-two-lines.json", json.dumps({"schema": "tempolux.stats", "version": "2\n" + 3000 * "x"}))
 save("report", "number-too-large.json", '{"schema":"tempolux.stats","version":"1","tool":"t","cpu_s":1e999,"wall_s":1}')
 save("report", "deep.json", "[" * 2000 + "]" * 2000)
 

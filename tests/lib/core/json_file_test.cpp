@@ -47,5 +47,8 @@ TEST_F(JsonFile, RefusesDeepNesting) {
 
 TEST_F(JsonFile, RefusesMissingFiles) { EXPECT_THROW(read_json("/nowhere/a.json"), InputError); }
 
+// A manifest may name the empty string, which is its own folder. Seen to fail: the stream's own exception left.
+TEST_F(JsonFile, RefusesFolders) { EXPECT_THROW(read_json(testing::TempDir()), InputError); }
+
 }  // namespace
 }  // namespace tempolux
