@@ -123,14 +123,14 @@ int main(int argc, char** argv) {
     // Options with the frame's seed, the same for a single frame and for a range.
     const auto seeded = [&](int frame) -> const Options& {
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
-      if (makes_points) options.view = importance->at(frame);
+      if (makes_points) options.view = importance->at(frame).spheres;
       return options;
     };
     tool.stats().phase("load");
     const unsigned camera = options.mode() == "points" && !options.importance.empty() ? tools::SceneInput::nothing
                                                                                       : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
-    importance.emplace(tool, input, options.importance);
+    importance.emplace(tool, input, options.importance, "indirect");
     StaticTree tree;
     if (options.mode() == "points")
       for (int frame : frames)

@@ -12,9 +12,10 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr std::string_view kFirstLine = "tempolux view 1.0";
+constexpr std::string_view kFirstLine = "tempolux view 1.0", kFirstLineWithLights = "tempolux view 1.1";
+constexpr std::string_view kLight = "light ", kEnvironmentName = "environment";
 constexpr double kFarthest = 1e30;             ///< m: squares stay in a double, and no scene is larger
-constexpr std::size_t kLargestFile = 1 << 14;  ///< bytes: 32 lines of five numbers of 24 characters need a quarter
+constexpr std::size_t kLargestFile = 1 << 14;  ///< bytes: all lines with numbers of 24 characters need half
 
 void append(std::string& text, double value, char after) {
   char digits[32];
@@ -26,48 +27,83 @@ void append(std::string& text, double value, char after) {
   throw InputError(name + ": line " + std::to_string(line) + ": " + why + "; let scene-plan write the file anew");
 }
 
-ViewSphere parse_line(std::string_view line, const std::string& name, std::size_t number) {
-  std::array<double, 5> values{};
+/// Numbers at the end of a line, one blank or more before each. Refuses the line unless there are as many as in `values`.
+void parse_numbers(std::string_view line, std::span<double> values, const std::string& why, const std::string& name,
+                   std::size_t number) {
   const char* at = line.data();
   const char* const end = at + line.size();
   for (double& value : values) {
     while (at != end && *at == ' ') ++at;
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !(std::abs(value) <= kFarthest))
-      refuse(name, number, "five numbers wanted: x y z radius weight");
+    if (error != std::errc() || !(std::abs(value) <= kFarthest)) refuse(name, number, why);
     at = next;
   }
-  if (at != end) refuse(name, number, "five numbers wanted: x y z radius weight");
+  if (at != end) refuse(name, number, why);
+}
+
+ViewSphere parse_sphere(std::string_view line, const std::string& name, std::size_t number) {
+  std::array<double, 5> values{};
+  parse_numbers(line, values, "five numbers wanted: x y z radius weight", name, number);
   if (!(values[3] > 0) || !(values[4] > 0)) refuse(name, number, "radius and weight must be above 0");
   return {{values[0], values[1], values[2]}, values[3], values[4]};
 }
 
+ViewLight parse_light(std::string_view line, const std::string& name, std::size_t number) {
+  const std::string wanted = "'light NODE SHARE' or 'light environment SHARE' wanted";
+  line.remove_prefix(kLight.size());
+  ViewLight light;
+  if (line.starts_with(kEnvironmentName)) {
+    line.remove_prefix(kEnvironmentName.size());
+  } else {
+    const auto [next, error] = std::from_chars(line.data(), line.data() + line.size(), light.node);
+    if (error != std::errc() || light.node == ViewLight::kEnvironment) refuse(name, number, wanted);
+    line.remove_prefix(std::size_t(next - line.data()));
+  }
+  parse_numbers(line, {&light.share, 1}, wanted, name, number);
+  if (!(light.share > 0)) refuse(name, number, "a light's share must be above 0");
+  return light;
+}
+
 }  // namespace
 
-std::string view_text(std::span<const ViewSphere> spheres) {
-  std::string text = std::string(kFirstLine) + "\n";
-  for (const ViewSphere& sphere : spheres) {
+std::string view_text(const View& view) {
+  std::string text = std::string(view.lights.empty() ? kFirstLine : kFirstLineWithLights) + "\n";
+  for (const ViewSphere& sphere : view.spheres) {
     for (const double x : sphere.centre) append(text, x, ' ');
     append(text, sphere.radius, ' ');
     append(text, sphere.weight, '\n');
   }
+  for (const ViewLight& light : view.lights) {
+    text += kLight;
+    text += light.node == ViewLight::kEnvironment ? std::string(kEnvironmentName) : std::to_string(light.node);
+    text += ' ';
+    append(text, light.share, '\n');
+  }
   return text;
 }
 
-std::vector<ViewSphere> parse_view(const std::string& text, const std::string& name) {
+View parse_view(const std::string& text, const std::string& name) {
   std::istringstream in(text);
   std::string line;
-  if (!std::getline(in, line) || line != kFirstLine) refuse(name, 1, "not a view file of version 1");
-  std::vector<ViewSphere> spheres;
+  if (!std::getline(in, line) || (line != kFirstLine && line != kFirstLineWithLights))
+    refuse(name, 1, "not a view file of version 1");
+  const bool may_have_lights = line == kFirstLineWithLights;
+  View view;
   for (std::size_t number = 2; std::getline(in, line); ++number) {
-    if (spheres.size() == kMaxViewSpheres)
+    if (may_have_lights && line.starts_with(kLight)) {
+      if (view.lights.size() == kMaxViewLights)
+        refuse(name, number, "more than " + std::to_string(kMaxViewLights) + " lights");
+      view.lights.push_back(parse_light(line, name, number));
+      continue;
+    }
+    if (view.spheres.size() == kMaxViewSpheres)
       refuse(name, number, "more than " + std::to_string(kMaxViewSpheres) + " spheres");
-    spheres.push_back(parse_line(line, name, number));
+    view.spheres.push_back(parse_sphere(line, name, number));
   }
-  return spheres;
+  return view;
 }
 
-std::vector<ViewSphere> read_view(const std::string& path) {
+View read_view(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text(kLargestFile + 1, '\0');
   in.read(text.data(), std::streamsize(text.size()));

@@ -112,30 +112,49 @@ inline float RecordStore::weight_of(const Entry& entry, Vec3 position, Vec3 norm
   return seen.contains(d, entry.normal) ? weight : 0;
 }
 
-inline void RecordStore::accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum,
-                                    Interpolated& result) const {
-  const float w = weight_of(entry, position, normal);
-  if (!(w > 0)) return;
-  const IrradianceRecord& r = records_[entry.record];
-  const Vec3 d = position - entry.position;
-  const Vec3 turn = cross(entry.normal, normal);
-  for (int c = 0; c < 3; ++c) {
-    const float there =
-        r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
-    sum[c] += w * std::max(0.0f, there);
-  }
-  result.noise += w * r.noise;
-  result.weight += w;
-  ++result.count;
+/// Weight of a valid record at a place whose own radius is at most `place_radius` (interpolate()). `distance` [m]: of the
+/// place from the record.
+inline float RecordStore::agreeing(float weight, float radius, float distance, float place_radius) {
+  const float most = place_radius + distance;
+  if (!(radius > most)) return weight;
+  const float less = 2 * most - radius;
+  return less > distance ? weight * (1 - distance / less) / (1 - distance / radius) : 0;
 }
 
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
-  Interpolated result;
-  Rgb sum{0.0f};
+  struct Valid {
+    std::uint32_t record;
+    float weight, radius, distance;
+  };
+  thread_local std::vector<Valid> all;
+  all.clear();
+  float place_radius = INFINITY, largest = 0;
   any_near(position, normal, [&](const Entry& entry) {
-    accumulate(entry, position, normal, sum, result);
+    const float w = weight_of(entry, position, normal);
+    if (!(w > 0)) return false;
+    const float distance = length(position - entry.position);
+    all.push_back({entry.record, w, entry.radius, distance});
+    place_radius = std::min(place_radius, entry.radius + distance);
+    largest = std::max(largest, entry.radius - distance);
     return false;
   });
+  Interpolated result;
+  Rgb sum{0.0f};
+  for (const Valid& valid : all) {
+    const float w =
+        largest > place_radius ? agreeing(valid.weight, valid.radius, valid.distance, place_radius) : valid.weight;
+    if (!(w > 0)) continue;
+    const IrradianceRecord& r = records_[valid.record];
+    const Vec3 d = position - r.position, turn = cross(r.normal, normal);
+    for (int c = 0; c < 3; ++c) {
+      const float there =
+          r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
+      sum[c] += w * std::max(0.0f, there);
+    }
+    result.noise += w * r.noise;
+    result.weight += w;
+    ++result.count;
+  }
   if (result.weight > 0) {
     result.irradiance = sum * (1 / result.weight);
     result.noise *= 1 / result.weight;

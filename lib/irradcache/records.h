@@ -70,6 +70,11 @@ class RecordStore {
   /// lie on the record's surface: if |(x - x_i) . (n + n_i)/2| > 0.05 r_i. (The left side is 0 along a circle.) Ward
   /// 1988 excludes only points behind the record. But points in front must be excluded, too: otherwise the bright
   /// ground below a plate's rim would light the top of the plate. A record is also not valid outside its clearance.
+  ///
+  /// The radius that a record would have here cannot exceed that of a record at the distance d by more than d [Krivanek
+  /// 2006], so it is at most s = min (r_i + d_i). If r_i > s + d_i, then the record does not know what is close here: a
+  /// record on open ground has a radius of 60 m, and a narrow house between its spokes may hold the place. Its radius
+  /// counts as 2 (s + d_i) - r_i, so the record does not count at all if r_i is above s + d_i by s or more.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Sum of the weights that earlier records have at the place of record number `record`. Leaves out records whose
   /// element of `marked` is not 0; `marked` may be empty.
@@ -129,7 +134,7 @@ class RecordStore {
   bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
   /// Weight of a record at a point; 0 where it is not valid.
   float weight_of(const Entry& entry, Vec3 position, Vec3 normal) const;
-  void accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
+  static float agreeing(float weight, float radius, float distance, float place_radius);
 
   float least_cosine_;
   std::vector<IrradianceRecord> records_;

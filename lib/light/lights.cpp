@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "lib/core/check.h"
 #include "lib/light/closed_parts.h"
@@ -47,15 +48,46 @@ void Lights::add_slots(const EmissionTable& table) {
     slots_.push_back({EmissionSlot::Kind::punctual, kNone, 0, i, 0});
   if (environment_) slots_.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
   TEMPOLUX_CHECK(slots_.size() == table.probability.size());
-  double sum = 0, all = which_ == Which::all ? 1 : 0;
+  double all = which_ == Which::all ? 1 : 0;
   if (which_ != Which::all)
     for (std::size_t i = 0; i < slots_.size(); ++i) all += shines(i) ? table.probability[i] : 0;
-  cumulative_.reserve(slots_.size());
+  std::vector<double> probability;
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    probability.push_back(all > 0 && shines(i) ? table.probability[i] / all : 0);
+  set_probabilities(probability);
+}
+
+void Lights::set_probabilities(const std::vector<double>& probability) {
+  cumulative_.clear();
+  photon_flux_.clear();
+  double sum = 0;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    slots_[i].probability = all > 0 && shines(i) ? table.probability[i] / all : 0;
-    cumulative_.push_back(sum += slots_[i].probability);
-    photon_flux_.push_back(Rgb(slot_flux(i) / slots_[i].probability));
+    slots_[i].probability = probability[i];
+    cumulative_.push_back(sum += probability[i]);
+    photon_flux_.push_back(Rgb(slot_flux(i) / probability[i]));
   }
+}
+
+Lights Lights::placed_alike() const {
+  const auto node = [&](std::size_t i) {
+    return slots_[i].light == kNone ? frame_->surfaces[slots_[i].surface].node : frame_->lights[slots_[i].light].node;
+  };
+  const auto is_placed = [&](std::size_t i) {
+    return slots_[i].probability > 0 && with(i, [](const auto& light) { return !light.distant(); });
+  };
+  std::map<std::uint32_t, double> of_node;
+  double all = 0;
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (is_placed(i)) of_node[node(i)] += slots_[i].probability, all += slots_[i].probability;
+  std::vector<double> probability(slots_.size());
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (is_placed(i)) {
+      const double p = slots_[i].probability;
+      probability[i] = 0.5 * (p / all + p / (of_node.at(node(i)) * double(of_node.size())));
+    }
+  Lights alike = *this;
+  alike.set_probabilities(probability);
+  return alike;
 }
 
 Rgbd Lights::slot_flux(std::size_t slot) const {

@@ -80,6 +80,11 @@ class Lights {
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
 
+  /// The lights inside the scene alone, for emit(): half of the photons are shared out by the probabilities of the table,
+  /// the other half equally among the nodes that hold lights, so that a weak lamp gets photons beside suns and strong
+  /// lamps. No light emits if nothing shines inside the scene.
+  Lights placed_alike() const;
+
   /// The same lights with a guide. Where the guide has a grid, sample() draws a direction of the environment from the
   /// grid with probability 1 - kUnguidedShare, else by radiance. All pdfs are those of this mixture, so expected values
   /// do not change, and a misleading guide costs at most 1 / kUnguidedShare times the variance. emit() does not use the
@@ -192,6 +197,7 @@ class Lights {
     return f(PunctualSource{frame_->lights[slots_[slot].light], aim_});
   }
   void add_slots(const EmissionTable& table);
+  void set_probabilities(const std::vector<double>& probability);
   void build_tree();
   std::vector<LightBounds> tree_bounds() const;
   Rgbd slot_flux(std::size_t slot) const;  ///< W

@@ -11,6 +11,7 @@
 #include "lib/core/sobol.h"
 #include "lib/light/aim.h"
 #include "lib/render/known_light.h"
+#include "lib/pilot/photon_shares.h"
 #include "lib/pilot/places_seen.h"
 
 namespace tempolux {
@@ -103,8 +104,8 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
 void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number,
                      std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
-  const auto add = [&](Vec3 position, double weight, double distance) {
-    places.push_back({Vec3d(position) + origin, weight, distance});
+  const auto add = [&](Vec3 position, Vec3 normal, double weight, double distance) {
+    places.push_back({Vec3d(position) + origin, weight, distance, normal});
   };
   for (std::uint32_t i = 0; i < kPlacesOfEye; ++i) {
     const PathRandom random(number, i);
@@ -112,9 +113,9 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
     const Look look{where.x * float(view.width()), where.y * float(view.height()), random};
     const std::optional<SeenPoint> seen = seen_through(tracer, view, look);
     if (!seen) continue;
-    add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));
     SurfacePoint at = seen->surface;
     Vec3 normal = at.normal_geometric * std::copysign(1.0f, dot(at.normal_geometric, seen->normal));
+    add(at.position, normal, 1, length(Vec3d(at.position) - Vec3d(view.eye())));
     double weight = kReflected;
     for (std::uint32_t bounce = 1; bounce <= kBounces; ++bounce, weight *= kReflected) {
       const Ray ray = spawn_ray(at, Frame(normal).to_world(sample_hemisphere_cos(random.get2(bounce, Purpose::place))));
@@ -122,7 +123,7 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
       if (!tracer.intersect(ray, hit)) break;
       at = tracer.surface_point(hit);
       normal = at.normal_geometric * -std::copysign(1.0f, dot(at.normal_geometric, ray.direction));
-      add(at.position, weight, 0);
+      add(at.position, normal, weight, 0);
     }
   }
 }
@@ -154,13 +155,6 @@ Affine turned(const std::array<double, 3>& angles) {
   Affine a;
   a.row = {Vec3d{right.x, up.x, -forward.x}, Vec3d{right.y, up.y, -forward.y}, Vec3d{right.z, up.z, -forward.z}};
   return a;
-}
-
-/// True if no surface lies between two places in scene space.
-bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
-  const Vec3d way = to - from;
-  const double distance = length(way);
-  return distance == 0 || !tracer.occluded({Vec3(from), Vec3(way / distance), 0, float(distance)});
 }
 
 /// A cell of the lattice of cameras.
@@ -234,7 +228,13 @@ void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, in
     add_seen_places(tracer, CameraView(cell.cameras[i], origin, width, height), i, seen.places);
 }
 
-std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius) {
+bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
+  const Vec3d way = to - from;
+  const double distance = length(way);
+  return distance == 0 || !tracer.occluded({Vec3(from), Vec3(way / distance), 0, float(distance)});
+}
+
+SeenSpheres seen_spheres(const std::vector<WeighedPlace>& places, double scene_radius) {
   double farthest = 0, whole = 0;
   std::vector<const WeighedPlace*> all;
   for (const WeighedPlace& place : places) {
@@ -265,9 +265,13 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
     held += cells[i].weight / whole;
   }
   gain += (1 - held) * std::log2(Aim::kUniform);
-  if (!(gain >= kLeastGain)) return {};
   std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
-  return spheres;
+  return {std::move(spheres), gain >= kLeastGain};
+}
+
+std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius) {
+  SeenSpheres seen = seen_spheres(places, scene_radius);
+  return seen.worth_aiming ? std::move(seen.spheres) : std::vector<formats::ViewSphere>();
 }
 
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
@@ -277,14 +281,19 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
   return spheres;
 }
 
-std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view) {
-  SeenAround seen;
-  look_around(tracer, view.camera(), view.width(), view.height(), seen);
-  return spheres_in_scene(spheres_around(seen.places, scene_radius), tracer.frame().origin);
+void aim_at_seen(const Tracer& tracer, const CameraView& view, const std::string& kinds, EmissionTable& table) {
+  SeenAround around;
+  look_around(tracer, view.camera(), view.width(), view.height(), around);
+  const SeenSpheres seen = seen_spheres(around.places, table.sphere_radius);
+  if (seen.worth_aiming) table.aim = spheres_in_scene(seen.spheres, tracer.frame().origin);
+  SharePilot pilot(seen.spheres, around.places, kinds);
+  pilot.look(tracer, table);
+  give_shares(tracer.frame(), pilot.shares(), table);
 }
 
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view, Lights::Which which) {
-  if (which != Lights::Which::placed) table.aim = spheres_seen(tracer, table.sphere_radius, view);
+  aim_at_seen(tracer, view, "direct,caustic,indirect", table);
+  if (which == Lights::Which::placed) table.aim.clear();
   return Lights(tracer.frame(), table, which);
 }
 

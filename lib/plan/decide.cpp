@@ -16,6 +16,7 @@
 #include "lib/pilot/choose_preview.h"
 #include "lib/pilot/choose_split.h"
 #include "lib/pilot/hidden_light.h"
+#include "lib/pilot/photon_shares.h"
 #include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
 
@@ -117,7 +118,8 @@ class FramePilot {
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
-      table.aim = spheres_ = spheres_seen(tracer_, table.sphere_radius, view_);
+      aim_at_seen(tracer_, view_, kinds_, table);
+      spheres_ = table.aim;
       aimed_.emplace(frame_, table);
       if (may_hide_light(frame_)) without_extent_.emplace(frame_, table, Lights::Which::punctual);
     }
@@ -316,7 +318,7 @@ void decide_preview(const PlannedSegment& segment, const std::vector<int>& view_
   const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
-  d.view = view_of(view_frames, wish.width, wish.height, source, tree);
+  d.view = view_of(view_frames, d.kinds, wish, source, tree);
   d.reasons.push_back(density_reason(segment));
 }
 
@@ -346,25 +348,31 @@ std::vector<int> frames_of(std::span<const PlannedSegment> pieces) {
   return frames;
 }
 
-std::string view_of(const std::vector<int>& frames, int width, int height, const SceneSource& source,
-                    StaticTree& tree) {
-  SeenAround seen;
+std::string view_of(const std::vector<int>& frames, const std::string& kinds, const Wish& wish,
+                    const SceneSource& source, StaticTree& tree) {
+  SeenAround around;
   double radius = 0;
   std::set<std::string> cameras;
+  std::vector<int> looked;
   for (const int number : spread(frames)) {
     const SceneFrame frame = source.at(number, false);
     const PlacedCamera camera = frame.camera(source.camera_node);
     if (!cameras.insert(camera_hash(camera)).second) continue;
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
-    const Tracer tracer(frame, tree);
-    look_around(tracer, camera, width, height, seen);
-    // Only photons of distant light are aimed. Without distant light the aim serves the points alone, and the first
-    // picture decides whether the scene is large enough for an aim.
-    if (number == frames.front() && !frame.scene->has_distant_light() && spheres_around(seen.places, radius).empty())
-      return "";
+    look_around(Tracer(frame, tree), camera, wish.width, wish.height, around);
+    looked.push_back(number);
   }
-  const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
-  return spheres.empty() ? "" : formats::view_text(spheres);
+  SeenSpheres seen = seen_spheres(around.places, radius);
+  SharePilot pilot(seen.spheres, around.places, kinds);
+  for (const int number : {looked.front(), looked[looked.size() / 2], looked.back()}) {
+    const SceneFrame frame = source.at(number, false);
+    EmissionTable table = source.emission(number);
+    if (seen.worth_aiming) table.aim = spheres_in_scene(seen.spheres, frame.origin);
+    pilot.look(Tracer(frame, tree), table);
+  }
+  if (!seen.worth_aiming) seen.spheres.clear();
+  const formats::View view{std::move(seen.spheres), pilot.shares()};
+  return view.spheres.empty() && view.lights.empty() ? "" : formats::view_text(view);
 }
 
 namespace {
@@ -416,7 +424,7 @@ void decide_light(const PlannedSegment& segment, const std::vector<int>& view_fr
   }
   LookedAt looked(wish, media, source, d, {});
   decide_by_looks(segment, wish, media, source, looked, d);
-  if (d.photons()) d.view = view_of(view_frames, wish.width, wish.height, source, looked.tree);
+  if (d.photons()) d.view = view_of(view_frames, d.kinds, wish, source, looked.tree);
 }
 
 /// Copies the shot's decisions about the light.

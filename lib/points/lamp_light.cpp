@@ -63,6 +63,7 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
                                              std::uint64_t seed) {
   if (!(points.spacing() > 0) || !lights.has_placed()) return {};
   const std::uint64_t key = mix64(seed ^ kKey);
+  const Lights lamps = lights.placed_alike();
   const float reach = kBesideLamp * points.spacing();
   std::vector<LampPhoton> all;
   std::size_t done = 0;
@@ -71,7 +72,7 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
         parallel_found<LampPhoton>(wanted - done, 1024, [&](std::size_t j, std::vector<LampPhoton>& found) {
           const std::size_t i = done + j;
           const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
-          const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
+          const PhotonEmission emission = lamps.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
           if (const auto photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found.push_back(*photon);
         });
     all.insert(all.end(), more.begin(), more.end());

@@ -10,30 +10,43 @@ namespace tempolux::formats {
 namespace {
 
 TEST(View, ReadsBackToTheSameBits) {
-  const std::vector<ViewSphere> spheres = {{{0.5, -1.5, 3e-7}, 0.875, 0.0625}, {{1e20, 0.1, -0.0}, 1.0 / 3, 1}};
-  const std::string text = view_text(spheres);
-  const std::vector<ViewSphere> read = parse_view(text, "view");
-  ASSERT_EQ(read.size(), 2u);
+  const View view{{{{0.5, -1.5, 3e-7}, 0.875, 0.0625}, {{1e20, 0.1, -0.0}, 1.0 / 3, 1}},
+                  {{0, 0.1}, {7, 1e-7}, {ViewLight::kEnvironment, 0.5}}};
+  const std::string text = view_text(view);
+  const View read = parse_view(text, "view");
+  ASSERT_EQ(read.spheres.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(read[i].centre, spheres[i].centre);
-    EXPECT_EQ(read[i].radius, spheres[i].radius);
-    EXPECT_EQ(read[i].weight, spheres[i].weight);
+    EXPECT_EQ(read.spheres[i].centre, view.spheres[i].centre);
+    EXPECT_EQ(read.spheres[i].radius, view.spheres[i].radius);
+    EXPECT_EQ(read.spheres[i].weight, view.spheres[i].weight);
+  }
+  ASSERT_EQ(read.lights.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read.lights[i].node, view.lights[i].node);
+    EXPECT_EQ(read.lights[i].share, view.lights[i].share);
   }
   EXPECT_EQ(view_text(read), text);
-  EXPECT_TRUE(parse_view(view_text({}), "view").empty());
+}
+
+// Without lights a view is what version 1.0 was, byte by byte.
+TEST(View, WithoutLightsIsOfVersion1_0) {
+  EXPECT_EQ(view_text({}), "tempolux view 1.0\n");
+  EXPECT_TRUE(parse_view(view_text({}), "view").spheres.empty());
 }
 
 TEST(View, WorkedExampleOfThePageIsWhatTheWriterWrites) {
-  const std::string text = view_text(std::vector<ViewSphere>{{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}});
+  const std::string text = view_text(
+      {{{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}}, {{12, 0.5}, {ViewLight::kEnvironment, 0.25}}});
   EXPECT_NE(testing::load("../formats/plan/plan.md").find("\n\n" + testing::as_on_a_page(text) + "\n"),
             std::string::npos)
       << text;
 }
 
 TEST(View, RefusesWhatIsNone) {
-  const std::string first = "tempolux view 1.0\n", good = "0 0 0 1 1\n";
-  std::string many = first;
+  const std::string first = "tempolux view 1.0\n", good = "0 0 0 1 1\n", second = "tempolux view 1.1\n";
+  std::string many = first, lights = second;
   for (std::size_t i = 0; i <= kMaxViewSpheres; ++i) many += good;
+  for (std::size_t i = 0; i <= kMaxViewLights; ++i) lights += "light 1 1\n";
   for (const auto& [text, line] : {std::pair<std::string, const char*>{"", "line 1"},
                                    {"tempolux view 2.0\n", "line 1"},
                                    {first + "\n", "line 2"},
@@ -45,6 +58,15 @@ TEST(View, RefusesWhatIsNone) {
                                    {first + "0 0 0 1 -1\n", "line 2"},
                                    {first + "0 0 0 1e31 1\n", "line 2"},
                                    {first + "0 0 0 one 1\n", "line 2"},
+                                   {first + "light 1 1\n", "line 2"},
+                                   {second + "light 1\n", "line 2"},
+                                   {second + "light 1 0\n", "line 2"},
+                                   {second + "light 1 nan\n", "line 2"},
+                                   {second + "light -1 1\n", "line 2"},
+                                   {second + "light 4294967295 1\n", "line 2"},
+                                   {second + "light sun 1\n", "line 2"},
+                                   {second + "light environment 1 1\n", "line 2"},
+                                   {lights, "line 66"},
                                    {many, "line 34"}}) {
     try {
       parse_view(text, "view");

@@ -4,14 +4,14 @@
 
 namespace tempolux::tools {
 
-Importance::Importance(Tool& tool, SceneInput& input, const std::string& option)
-    : tool_(tool), input_(input), own_(option.empty()) {
+Importance::Importance(Tool& tool, SceneInput& input, const std::string& option, std::string kinds)
+    : tool_(tool), input_(input), own_(option.empty()), kinds_(std::move(kinds)) {
   if (own_ || option == "none") return;
   tool.depends_on(option);
   given_ = formats::read_view(option);
 }
 
-const std::vector<formats::ViewSphere>& Importance::at(int frame) {
+const formats::View& Importance::at(int frame) {
   if (!own_) return given_;
   const int inside = frame_in_animation(input_.scene(), frame, input_.time());
   const Segment segment = segment_of(input_.scene(), inside, input_.time());
@@ -26,7 +26,7 @@ const std::vector<formats::ViewSphere>& Importance::at(int frame) {
   const Wish usual;  // default picture size, of which only the aspect ratio counts
   StaticTree tree;
   const std::string text =
-      view_of(frames_of(input_.has_media() ? plan.segments : plan.shot), usual.width, usual.height, source, tree);
+      view_of(frames_of(input_.has_media() ? plan.segments : plan.shot), kinds_, usual, source, tree);
   if (!text.empty()) found->second = formats::parse_view(text, "what the camera sees");
   return found->second;
 }

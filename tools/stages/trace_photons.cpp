@@ -12,6 +12,7 @@
 #include "lib/core/arrays.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
+#include "lib/pilot/photon_shares.h"
 #include "lib/pilot/seen_spheres.h"
 #include "lib/scene/static_scene.h"
 #include "tools/common/cli.h"
@@ -71,10 +72,13 @@ void PhotonTracing::trace(int frame_number, bool is_last) {
   else trace_global(frame_number);
 }
 
-/// The emission table of the frame, with distant light aimed where the cameras look.
+/// The emission table of the frame, with distant light aimed where the cameras look, and photons for every light by what
+/// they bring into view.
 EmissionTable PhotonTracing::aimed_emission(const SceneFrame& frame, int frame_number) {
   EmissionTable emission = input_.emission(frame.frame);
-  emission.aim = spheres_in_scene(importance_.at(frame_number), frame.origin);
+  const formats::View& view = importance_.at(frame_number);
+  emission.aim = spheres_in_scene(view.spheres, frame.origin);
+  give_shares(frame, view.lights, emission);
   return emission;
 }
 

@@ -23,7 +23,7 @@ struct TraceOptions {
 class PhotonTracing {
  public:
   PhotonTracing(Tool& tool, SceneInput& input, const TraceOptions& options)
-      : tool_(tool), input_(input), options_(options), importance_(tool, input, options.importance) {}
+      : tool_(tool), input_(input), options_(options), importance_(tool, input, options.importance, options.kinds) {}
 
   /// Writes the map that options.map names. `is_last`: no further frame follows.
   void trace(int frame_number, bool is_last);
