@@ -46,7 +46,6 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
   const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
   for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
   given_ = discs_.size();
-  given_share_ = aimed;
   for (const double radius : around) add(middle, radius, kAround / double(around.size()));
 }
 
@@ -101,11 +100,34 @@ bool Aim::holds(Vec3 point) const {
   });
 }
 
+/// Radius [m] up to which spheres are targets from a place, which is relative to the scene's centre.
+double Aim::largest_target(Vec3d place) const {
+  double own = INFINITY;
+  for (const Disc& d : std::span(discs_).first(given_)) {
+    const Vec3d to = place - d.centre;
+    if (dot(to, to) < d.radius * d.radius) own = std::min(own, d.radius);
+  }
+  return own / kMuchSmaller;
+}
+
+bool Aim::aims_from(Vec3 place) const {
+  const double largest = largest_target(Vec3d(place) - Vec3d(scene_centre_));
+  return std::ranges::any_of(std::span(discs_).first(given_), [&](const Disc& d) { return d.radius <= largest; });
+}
+
 Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Vec3d from = Vec3d(place) - Vec3d(scene_centre_);
-  double left = double(u.x) * given_share_;
-  std::size_t chosen = 0;
-  while (chosen + 1 < given_ && left >= discs_[chosen].share) left -= discs_[chosen++].share;
+  const double largest = largest_target(from);
+  double left = 0;
+  for (std::size_t k = 0; k < given_; ++k) left += discs_[k].radius <= largest ? discs_[k].share : 0;
+  left *= double(u.x);
+  std::size_t chosen = given_;
+  for (std::size_t k = 0; k < given_; ++k) {
+    if (!(discs_[k].radius <= largest)) continue;
+    if (chosen != given_) left -= discs_[chosen].share;
+    chosen = k;
+    if (left < discs_[k].share) break;
+  }
   const Vec3d to = discs_[chosen].centre - from;
   // The direction is uniform over the cone, so 1 - cos of its angle to the axis is uniform.
   const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to),
@@ -124,13 +146,16 @@ double Aim::pdf_solid_angle(Vec3 place, Vec3 direction) const {
 /// `chosen` is the sphere towards which the direction was drawn: it counts even where rounding puts the direction just
 /// outside the rim. `place` is relative to the scene's centre.
 double Aim::pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const {
-  double pdf = 0;
+  const double largest = largest_target(place);
+  double pdf = 0, shares = 0;
   for (std::size_t k = 0; k < given_; ++k) {
+    if (!(discs_[k].radius <= largest)) continue;
+    shares += discs_[k].share;
     const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));
     if (k == chosen || (dot(to, Vec3d(direction)) > 0 && dot(aside, aside) < discs_[k].radius * discs_[k].radius))
-      pdf += discs_[k].share / (given_share_ * 2 * kPiD * one_minus_cos(discs_[k].radius, to));
+      pdf += discs_[k].share / (2 * kPiD * one_minus_cos(discs_[k].radius, to));
   }
-  return pdf;
+  return shares > 0 ? pdf / shares : 0;
 }
 
 }  // namespace tempolux

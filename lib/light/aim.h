@@ -56,14 +56,22 @@ class Aim {
   /// True if one of the given spheres holds the point (scene space).
   bool holds(Vec3 point) const;
 
-  /// A direction from a place outside all given spheres into one of them. The sphere is chosen by weight; the direction
-  /// is uniform over the solid angle that the sphere covers.
+  /// True if bounces at this place (scene space) may be aimed at given spheres: at those that are kMuchSmaller times
+  /// smaller than the smallest given sphere that holds the place. All spheres if none holds it.
+  bool aims_from(Vec3 place) const;
+  /// A wide ground that a window shows is held by a large sphere, and the room behind the window by small ones. Light
+  /// that the ground reflects must find the window. Cells of one room differ by less: bounces inside a room find its
+  /// other cells anyway.
+  static constexpr double kMuchSmaller = 8;
+
+  /// A direction from a place into one of the spheres that aims_from() allows. The sphere is chosen by weight; the
+  /// direction is uniform over the solid angle that the sphere covers.
   struct Way {
     Vec3 direction;              ///< unit
     double pdf_solid_angle = 0;  ///< [1/sr]; sums over all spheres that lie in this direction
   };
   /// u.x chooses the sphere and gives the angle to the cone's axis, u.y the angle around the axis. Must not be called
-  /// if empty() or holds(place).
+  /// unless aims_from(place).
   Way towards(Vec3 place, Vec2 u) const;
   /// pdf [1/sr] with which towards() gives this direction (unit).
   double pdf_solid_angle(Vec3 place, Vec3 direction) const;
@@ -80,9 +88,9 @@ class Aim {
   };
   void add(Vec3d centre, double radius, double share);
   double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const;
+  double largest_target(Vec3d place) const;
   std::vector<Disc> discs_;  ///< the given spheres come first
   std::size_t given_ = 0;
-  double given_share_ = 0;  ///< probability of choosing any of the given spheres
   Vec3 scene_centre_{};
   double scene_radius_ = 0;
 };

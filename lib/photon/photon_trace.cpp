@@ -486,7 +486,7 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
   Vec3& travel = event.travel;
   // A path is aimed only once: a product of several factors of aim() would be very large for very rare paths.
   const bool aims =
-      !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(at.point.position);
+      !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && lights_.aim().aims_from(at.point.position);
   // A photon may be scattered in up to three ways: by the shading normal, by the geometric normal, and by the shading
   // normal as if it came from its image. Each way has the same chance, and the photon gets the number of ways as
   // weight.

@@ -35,8 +35,10 @@ TEST(View, WithoutLightsIsOfVersion1_0) {
 }
 
 TEST(View, WorkedExampleOfThePageIsWhatTheWriterWrites) {
-  const std::string text = view_text(
-      {{{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}}, {{12, 0.5}, {ViewLight::kEnvironment, 0.25}}});
+  View view;
+  view.spheres = {{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}};
+  view.lights = {{12, 0.5}, {ViewLight::kEnvironment, 0.25}};
+  const std::string text = view_text(view);
   EXPECT_NE(testing::load("../formats/plan/plan.md").find("\n\n" + testing::as_on_a_page(text) + "\n"),
             std::string::npos)
       << text;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
@@ -22,17 +23,37 @@ IrradianceRecord record_at(Vec3 position, Vec3 normal, float radius, Rgb irradia
   return r;
 }
 
+struct BruteForce : RecordStore::Interpolated {
+  double covering = 0;  ///< sum of the weights that covers() adds
+};
+
 /// The sum of records.h over all records, one by one, in double.
-RecordStore::Interpolated by_brute_force(const RecordStore& store, Vec3 position, Vec3 normal) {
-  RecordStore::Interpolated result;
-  Rgbd sum{0.0};
-  double weight = 0;
+BruteForce by_brute_force(const RecordStore& store, Vec3 position, Vec3 normal) {
+  struct Valid {
+    const IrradianceRecord& record;
+    double weight, distance;
+  };
+  std::vector<Valid> valid;
+  double place_radius = INFINITY;
   for (const IrradianceRecord& r : store.records()) {
     const Vec3d d = Vec3d(position) - Vec3d(r.position), n(normal), n_i(r.normal);
     const double cosine = dot(n, n_i);
     if (length(d) >= double(r.radius) || cosine <= 0.94 || std::abs(dot(d, n + n_i)) > 0.1 * double(r.radius)) continue;
     const double w = (1 - length(d) / double(r.radius)) * (1 - std::sqrt(std::max(0.0, 1 - cosine) / 0.06));
     if (w <= 0) continue;
+    valid.push_back({r, w, length(d)});
+    place_radius = std::min(place_radius, length(d) + double(r.radius));
+  }
+  BruteForce result;
+  Rgbd sum{0.0};
+  double weight = 0;
+  for (const auto& [r, full, distance] : valid) {
+    result.covering += full;
+    double w = full;
+    if (const double most = place_radius + distance, radius = double(r.radius); radius > most)
+      w *= std::max(0.0, 1 - distance / std::max(1e-30, 2 * most - radius)) / (1 - distance / radius);
+    if (!(w > 0)) continue;
+    const Vec3d d = Vec3d(position) - Vec3d(r.position), n(normal), n_i(r.normal);
     for (int c = 0; c < 3; ++c)
       sum[c] += w * std::max(0.0, double(r.irradiance[c]) + dot(cross(n_i, n), Vec3d(r.rotational[std::size_t(c)])) +
                                       dot(d, Vec3d(r.translational[std::size_t(c)])));
@@ -71,12 +92,15 @@ void expect_brute_force(Vec3 centre, float far) {
     const Vec3 offset = test::sample_sphere({uniform(), uniform()}) * (r.radius * 1.1f * uniform());
     const Vec3 position = r.position + offset;
     const Vec3 normal = normalize(r.normal + test::sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
-    const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
+    const RecordStore::Interpolated found = store.interpolate(position, normal);
+    const BruteForce wanted = by_brute_force(store, position, normal);
     covered += wanted.weight > 0;
-    // covers() adds the same weights in the same order and stops early.
-    for (const float weight : {0.3f, 0.9f})
-      ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
     const float tolerance = lost / std::max(1e-4f, r.radius);
+    for (const float weight : {0.3f, 0.9f}) {
+      if (std::abs(wanted.covering - double(weight)) > 10 * double(tolerance) + 1e-3 * double(store.records().size())) {
+        ASSERT_EQ(store.covers(position, normal, weight), wanted.covering >= double(weight)) << i;
+      }
+    }
     if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
     // 1 - cosine has an error of 6e-8, which is sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
     const float angle = 1e-3f * float(wanted.count);
@@ -107,6 +131,19 @@ TEST(RecordStore, NoCellIsForgotten) {
       EXPECT_EQ(store.interpolate(q, {0, 0, 1}).count, 1) << radius;
     }
   }
+}
+
+/// Records on open ground, of 60 m, reach into a house 40 m away whose records have .5 m. The house is too narrow for
+/// the ground's spokes. .5 + .1 + 40 m is far below 60 m, so that the ground's records do not count. Where radii agree,
+/// r_i <= s + d_i, all records count by their hats. Seen to fail: without the rule the light inside is .6 of what it is.
+TEST(RecordStore, OpenGroundDoesNotReachIntoAHouse) {
+  RecordStore store;
+  for (const Vec3 ground : {Vec3{40, 0, 0}, Vec3{0, 0, 40}, Vec3{28, 0, 28}})
+    store.add(record_at(ground, {0, 1, 0}, 60, Rgb(0.0f)));
+  store.add(record_at({0.1f, 0, 0}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
+  EXPECT_EQ(store.interpolate({0, 0, 0}, {0, 1, 0}).irradiance.r, 1);
+  EXPECT_EQ(store.interpolate({0, 0, 0}, {0, 1, 0}).count, 1);
+  EXPECT_EQ(store.interpolate({20, 0, 20}, {0, 1, 0}).count, 3);
 }
 
 /// Seen to fail: only the last record listed in the larger table.
@@ -221,7 +258,7 @@ TEST(RecordStore, OneRecordAndNone) {
 TEST(RecordStore, RecordsCloserThanFloatSpacing) {
   RecordStore store;
   const float x = 777.7f;
-  for (int i = 0; i < 5; ++i) store.add(record_at({x, 5, 5}, {0, 1, 0}, 1e-7f, Rgb(float(i))));
+  for (int i = 0; i < 5; ++i) store.add(record_at({x, 5, 5}, {0, 1, 0}, 1e-3f, Rgb(float(i))));
   const auto found = store.interpolate({x, 5, 5}, {0, 1, 0});
   EXPECT_EQ(found.count, 5);
   EXPECT_NEAR(found.irradiance.r, 2, 1e-6f);
@@ -229,13 +266,14 @@ TEST(RecordStore, RecordsCloserThanFloatSpacing) {
   EXPECT_EQ(store.interpolate({x, 5, 5}, {0, 1, 0}).count, 6);
 }
 
-/// Radii larger than the scene and smaller than the resolution of floats there; a scene of size 0.
+/// Radii larger than the scene and smaller than the resolution of floats there, which agree at no place; a scene of
+/// size 0.
 TEST(RecordStore, RadiiAtBothEnds) {
   RecordStore store;
   store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e30f, Rgb(1.0f)));
   store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e-18f, Rgb(3.0f)));
   EXPECT_EQ(store.interpolate({1e6f, 0, 0}, {0, 1, 0}).irradiance, Rgb(1.0f));
-  EXPECT_NEAR(store.interpolate({0.5f, 0, 0.5f}, {0, 1, 0}).irradiance.r, 2, 1e-6f);
+  EXPECT_EQ(store.interpolate({0.5f, 0, 0.5f}, {0, 1, 0}).irradiance, Rgb(3.0f));
   RecordStore flat;
   flat.add(record_at({2, 2, 2}, {0, 1, 0}, 0.1f, Rgb(1.0f)));
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);

@@ -159,5 +159,27 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   EXPECT_LT(other, 64);
 }
 
+/// A small sphere, a room, inside a large one, the ground around it. From the ground bounces are aimed at the room
+/// alone, with the pdf of its cone; inside the room they are not aimed, nor between rooms of about one size.
+TEST(Aim, BouncesOnTheGroundAreAimedAtTheRoomInsideIt) {
+  const std::vector<AimSphere> spheres{{{0, 0, 0}, 50, 3}, {{10, 0, 0}, 2, 1}, {{13, 0, 0}, 3, 1}};
+  const Aim aim(spheres, {}, 100);
+  EXPECT_TRUE(aim.aims_from({-20, 0, 0}));
+  EXPECT_TRUE(aim.aims_from({80, 0, 0}));
+  EXPECT_FALSE(aim.aims_from({9, 0, 0}));
+  EXPECT_FALSE(aim.aims_from({15, 0, 0}));
+  const Vec3 place{10, -20, 0};
+  for (int i = 0; i < 100; ++i) {
+    const Aim::Way way = aim.towards(place, PathRandom(3, std::uint64_t(i)).get2(0, Purpose::test));
+    const double into = aim.pdf_solid_angle(place, way.direction);
+    EXPECT_NEAR(into, way.pdf_solid_angle, 1e-3 * into);
+    bool meets = false;
+    for (const std::size_t k : {1u, 2u})
+      meets = meets || length(cross(Vec3(spheres[k].centre) - place, way.direction)) <= float(spheres[k].radius) * 1.00001f;
+    EXPECT_TRUE(meets);
+  }
+  EXPECT_EQ(aim.pdf_solid_angle(place, {0, -1, 0}), 0);
+}
+
 }  // namespace
 }  // namespace tempolux

@@ -314,5 +314,23 @@ TEST(Lights, EmitFromTheFrontAndFromBothSidesIfTwoSided) {
   EXPECT_EQ(lights.emitted(hit(two), {0, 0, 1}, 0), Rgb(3.0f));
 }
 
+/// A lamp of 4 pi W beside a sun of 2e5 W and a lamp 1000 times as strong: without the sun, half of the photons by flux
+/// and half by lamp, so the weak lamp has 1/2 (1 / 1001 + 1 / 2) of them, and its flux is the same.
+TEST(Emission, PlacedAlikeGivesEveryLampPhotons) {
+  LightScene scene;
+  scene.add(PunctualLight::Kind::directional, Rgb(1000.0f), {}, {0, -1, 0});
+  scene.add(PunctualLight::Kind::point, Rgb(1.0f), {1, 0, 0}, {});
+  scene.add(PunctualLight::Kind::point, Rgb(1000.0f), {2, 0, 0}, {});
+  for (std::uint32_t i = 0; i < 3; ++i) scene.frame.lights[i].node = i;
+  const Lights alike = scene.lights().placed_alike();
+  const double weak = 0.5 * (1.0 / 1001 + 0.5);
+  EXPECT_EQ(alike.slots()[0].probability, 0);
+  EXPECT_NEAR(alike.slots()[1].probability, weak, 1e-6);
+  EXPECT_NEAR(alike.slots()[2].probability, 1 - weak, 1e-6);
+  const PhotonEmission first = alike.emit({0.5 * weak, 0.3, 0.4, 0.5});
+  EXPECT_EQ(first.slot, 1u);
+  EXPECT_NEAR(double(first.flux.r) * weak, 4 * kPiD, 1e-4);
+}
+
 }  // namespace
 }  // namespace tempolux
