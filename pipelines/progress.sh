@@ -110,6 +110,16 @@ advice() {
   esac
 }
 
+# Sets `audit` to the account of the frames; it may be empty. The statistics show that RUN has run the command.
+account() {
+  . "${0%/*}/made.sh"
+  ran=state/.account.tmp.$(uname -n).$$ text=$ran.text wanted=audit
+  trap 'rm -f "$ran" "$text"' EXIT
+  # shellcheck disable=SC2086
+  made "$ran" -- $RUN "$BIN/tempolux-info" --account $frames --stats "$ran" > "$text" || return
+  audit=$(cat "$text")
+}
+
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
 # the frames. The audit is the bias that frames report of their own light. A warning follows if a
@@ -119,8 +129,7 @@ end() {
   asked=$ERROR
   [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
   frames=$(sed -n 's/^frames := //p' plan.mk)
-  # shellcheck disable=SC2086
-  audit=$("$BIN/tempolux-info" --account $frames)
+  account || return
   [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' plan.mk
     then audit='not audited, too few of the tested paths bring light'
     else audit='not audited, as no preview is'; fi

@@ -22,6 +22,7 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
+case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
@@ -49,8 +50,13 @@ set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes
 
 . "${0%/*}/made.sh"
 plan=plan.mk folder=$OUT
-aside=$(mktemp -d) || exit 3
-trap 'rm -rf "$aside"' EXIT
+if [ "$goal" = estimate ] && [ -n "$RUN" ]; then   # other machines see OUT, and not /tmp
+  mkdir -p "$OUT/state" && aside=$OUT/state/.estimate.tmp.$(uname -n).$$ && mkdir "$aside" || exit 3
+  trap 'rm -rf "$aside"; rmdir "$OUT/state" "$OUT" 2> /dev/null' EXIT
+else
+  aside=$(mktemp -d) || exit 3
+  trap 'rm -rf "$aside"' EXIT
+fi
 export FAILED="$aside/failed" CLAIMS="$aside/claims"
 mkdir "$CLAIMS" || exit 3
 makes() {   # runs in a subshell; after an error all that does not need the lost file is made (-k)
@@ -58,7 +64,9 @@ makes() {   # runs in a subshell; after an error all that does not need the lost
   exec ${MAKE:-make} -k --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
-  ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
+  wanted=estimate
+  made "$aside/small.mk" "$aside/large.mk" -- $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
+  wanted=
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside" || exit
   # A plan in OUT says from now on what its commands cost.
@@ -128,7 +136,7 @@ fi
 raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
 [ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
-[ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
+[ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
 if [ "$goal" = report ]; then
   echo "look at $OUT/report/index.html"
   # Curves and steadiness need the scripts of the sources.

@@ -66,7 +66,7 @@ add_test(NAME pipelines.interrupted COMMAND python3 -B tests/pipelines/interrupt
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.interrupted_methods COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan>
          --only window,walkthrough,preview,smoke,temporal WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.interrupted pipelines.interrupted_methods PROPERTIES TIMEOUT 300)
+set_tests_properties(pipelines.interrupted pipelines.interrupted_methods PROPERTIES TIMEOUT 600)
 add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
