@@ -14,7 +14,7 @@
 # code is the command's, or 3 if the command said 0. The environment has BIN, RUN, RETRIES, and WAIT: how many seconds a
 # file of another machine may need to appear here, if RUN is set.
 . "${0%/*}/ending.sh"
-wanted='' instead='' may_differ='' lines=''
+wanted='' instead='' may_differ='' lines='' keyed='' called=''
 
 inodes() {   # inodes FILE... --: the inode of each file; "-": there is none
   while [ "$1" != -- ]; do
@@ -75,14 +75,37 @@ show() {   # show COMMAND...: prints a command that can be typed
   echo
 }
 
+# What the command for a file needs, in words of RUN: sets `memory`, such as 380M, and `time`, such as 0:01:01. $NEED
+# has megabytes and seconds of a job, $NEEDS is a file with bytes and CPU seconds by folder (jobs.sh needs). A file of
+# no stage, such as a preview, gets as much as the largest; before there is a plan, 4 GB and an hour.
+need_of() {   # need_of FILE ROUND: each further round gets twice as much
+  need=${NEED:-$( { cat "$NEEDS" || echo; } 2> /dev/null | awk -v folder="${1%%/*}" '
+    $1 == folder { found = 1; memory = $2; cpu = $3; exit }
+    $2 > memory { memory = $2 }
+    $3 > cpu { cpu = $3 }
+    END { if (memory) printf "%d %d", 1.5 * memory / 1e6 + 65, 2 * cpu + 61; else print "4096 3600" }')}
+  memory=$((${need% *} << $2))M time=$((${need#* } << $2))
+  time=$(printf '%d:%02d:%02d' $((time / 3600)) $((time % 3600 / 60)) $((time % 60)))
+}
+
 # The command of made()'s arguments: run_it N WORD1 ... WORDN -- COMMAND...
 run_it() {
   printed=${lines:+$2}
   shift $(($1 + 2))
+  case $RUN in *'{'*)
+    need_of "$named" $round
+    left=$(set -f; set -- $RUN; echo $#)
+    for word; do
+      shift
+      [ $((left -= 1)) -lt 0 ] ||
+        word=$(echo "$word" | sed "s/{mem}/$memory/g; s/{time}/$time/g; s/{threads}/${THREADS:-$(nproc)}/g")
+      set -- "$@" "$word"
+    done;;
+  esac
   [ -z "$V" ] || show "$@" >&2
   if [ -n "$printed" ]; then ending "$@" > "$printed"; else ending "$@"; fi
 }
-name_it() { shift $(($1 + 2)); tool_of "$@"; }
+name_it() { shift $(($1 + 2)); echo "${called:-$(tool_of "$@")}"; }
 
 # Sets `why` to the reason if the command, which ended with the code $1, has not made its files; else to "".
 judge() {   # judge CODE INODES FILE... --
@@ -118,7 +141,9 @@ worth_again() {
 
 # made FILE... -- COMMAND... Variables: `wanted`: the file that messages name where FILE is a temporary one;
 # `may_differ`: not empty if exit code 1 is an answer (aqm-compare); `instead`: a file for which FILE is made and that
-# another make may have made, and removed FILE; `lines`: FILE gets what the command prints, at least so many lines.
+# another make may have made, and removed FILE; `lines`: FILE gets what the command prints, at least so many lines;
+# `keyed`: not empty if a FILE that was there before is right, as its name says what it is; `called`: the name of the
+# command.
 made() {
   files_wanted=0 round=0
   for word; do [ "$word" != -- ] || break; files_wanted=$((files_wanted + 1)); done
@@ -126,6 +151,7 @@ made() {
   ! given_up "$named" || return 3
   while :; do
     old=$(inodes "$@") ended=0
+    [ -z "$keyed" ] || old=$(echo "$old" | sed 's/.*/-/')
     run_it $files_wanted "$@" || ended=$?
     judge $ended "$old" "$@"
     [ -n "$why" ] || return $((ended == 1))

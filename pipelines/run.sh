@@ -16,12 +16,14 @@ fi
 for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; done
 goal=$1 film=
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
+[ -z "$THREADS" ] || export TEMPOLUX_THREADS="$THREADS"
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
 quiet=; case "${MAKEFLAGS%% *}" in *s*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && quiet=yes ;; esac
 export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
+case $GROUP in '' | frame | segment | stage) ;; *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;; esac
 case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
@@ -86,14 +88,21 @@ else
     ran=$OUT/state/planned.json
     set -- "$@" --stats "$ran"
   fi
+  # A second make in OUT waits with its plan until this one has a copy.
+  if command -v flock > /dev/null && [ -d "$OUT/state" ] && : > "$OUT/state/.planning"; then
+    exec 7> "$OUT/state/.planning"
+    flock 7
+  fi 2> /dev/null
   wanted=plan.mk
   # shellcheck disable=SC2086
   made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
   wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
   plan=state/.plan.mk.tmp.$(uname -n).$$
-  trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
-  cp "$OUT/plan.mk" "$OUT/$plan" || exit
+  trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
+  export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
+  cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
+  exec 7>&-
 fi
 [ "$goal" = plan ] && exit
 case $goal in frames/*)
@@ -102,6 +111,34 @@ case $goal in frames/*)
 esac
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
+
+# With RUN, commands are joined into jobs first. What they leave, such as the copy of a frame that was removed, is made
+# by the rules as below.
+ran_jobs=
+jobs() {
+  export JOBS="$aside/jobs" PROGRESS="$aside/finished" UNIT=job
+  (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$JOBS" || exit
+  [ -s "$JOBS" ] || return 0
+  sh "$PIPELINES/jobs.sh" makefile < "$JOBS" > "$aside/jobs.mk"
+  : > "$PROGRESS"
+  TOTAL=$(wc -l < "$JOBS") BEGAN=$(date +%s) ran_jobs=yes
+  export TOTAL BEGAN
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+  ending makes_jobs || failed $?
+}
+makes_jobs() { exec ${MAKE:-make} -k --no-print-directory -f "$aside/jobs.mk" -C "$OUT" all; }
+case $RUN in *'{'*) export NEEDS="$aside/needs"; (cd "$OUT" && sh "$PIPELINES/jobs.sh" needs) > "$NEEDS";; esac
+# Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
+exec 8> "$OUT/state/.makes"
+alone() { ! command -v flock > /dev/null || flock "$@" 8; }
+alone -s
+failed() {
+  alone -n -x ||
+    echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" failed "$goal") >&2
+  exit "$1"
+}
+[ -z "$RUN" ] || [ "$goal" != demo ] || [ "${GROUP:=stage}" = stage ] || jobs
 
 # The commands that will run are those that make -n prints. progress.sh counts them. If there are none, make need not
 # read a long plan once more.
@@ -112,31 +149,21 @@ sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' "$aside/commands" > "$PROGRES
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(cd "$OUT" && sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"
 export TOTAL WEIGHT PROGRESS BEGAN
-[ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+[ "$TOTAL" = 0 ] || (cd "$OUT" && UNIT='' sh "$PIPELINES/progress.sh" begin)
 if [ "$TOTAL" -ge 500 ]; then   # a long run: estimate hours and disk first, by short runs of each stage
   (estimate "$@")
   df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
 fi
-# Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
-exec 8> "$OUT/state/.makes"
-alone() { ! command -v flock > /dev/null || flock "$@" 8; }
-alone -s
-failed() {
-  alone -n -x ||
-    echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
-  (cd "$OUT" && PLAN=$plan sh "$PIPELINES/progress.sh" failed "$goal") >&2
-  exit "$1"
-}
 if [ -s "$aside/commands" ]; then
   ending makes "$goal" -C "$folder" || failed $?
-elif [ -z "$quiet" ]; then
+elif [ -z "$quiet$ran_jobs" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
 # Raw frames that a killed make had filtered and not removed yet.
 raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
-[ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
-[ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
+[ -z "$raw" ] || (cd "$OUT" && sh "$PIPELINES/follow.sh" read $raw)
+[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
 if [ "$goal" = report ]; then
   echo "look at $OUT/report/index.html"
   # Curves and steadiness need the scripts of the sources.
