@@ -13,7 +13,7 @@
 #
 # MEGABYTES: half as much again as the largest command needs, the accuracy of the estimate, and 64 for the shell and
 # make. SECONDS: twice the CPU seconds of the commands, as if they had one processor, and a minute to start.
-# A job that failed gets twice as much of both (made.sh). The environment has PLAN and GROUP.
+# A job that was killed or lost gets twice as much of both (made.sh). The environment has PLAN and GROUP.
 : "${PLAN:=plan.mk}"
 
 # What commands have cost in this OUT, and where nothing has been measured yet, the estimate of the plan.

@@ -77,13 +77,13 @@ show() {   # show COMMAND...: prints a command that can be typed
 
 # What the command for a file needs, in words of RUN: sets `memory`, such as 380M, and `time`, such as 0:01:01. $NEED
 # has megabytes and seconds of a job, $NEEDS is a file with bytes and CPU seconds by folder (jobs.sh needs). A file of
-# no stage, such as a preview, gets as much as the largest; before there is a plan, 4 GB and an hour.
-need_of() {   # need_of FILE ROUND: each further round gets twice as much
+# no stage, such as a preview, gets as much as the largest; before there is a plan, 1 GB and half an hour.
+need_of() {   # need_of FILE TIMES: so many times twice as much
   need=${NEED:-$( { cat "$NEEDS" || echo; } 2> /dev/null | awk -v folder="${1%%/*}" '
     $1 == folder { found = 1; memory = $2; cpu = $3; exit }
     $2 > memory { memory = $2 }
     $3 > cpu { cpu = $3 }
-    END { if (memory) printf "%d %d", 1.5 * memory / 1e6 + 65, 2 * cpu + 61; else print "4096 3600" }')}
+    END { if (memory) printf "%d %d", 1.5 * memory / 1e6 + 65, 2 * cpu + 61; else print "1024 1800" }')}
   memory=$((${need% *} << $2))M time=$((${need#* } << $2))
   time=$(printf '%d:%02d:%02d' $((time / 3600)) $((time % 3600 / 60)) $((time % 60)))
 }
@@ -93,7 +93,7 @@ run_it() {
   printed=${lines:+$2}
   shift $(($1 + 2))
   case $RUN in *'{'*)
-    need_of "$named" $round
+    need_of "$named" $doubled
     left=$(set -f; set -- $RUN; echo $#)
     for word; do
       shift
@@ -145,7 +145,7 @@ worth_again() {
 # `keyed`: not empty if a FILE that was there before is right, as its name says what it is; `called`: the name of the
 # command.
 made() {
-  files_wanted=0 round=0
+  files_wanted=0 round=0 doubled=0
   for word; do [ "$word" != -- ] || break; files_wanted=$((files_wanted + 1)); done
   named=${wanted:-$1}
   ! given_up "$named" || return 3
@@ -157,6 +157,8 @@ made() {
     [ -n "$why" ] || return $((ended == 1))
     worth_again $round $ended || break
     round=$((round + 1))
+    # Killed or lost: perhaps for want of memory or time. Other codes may be those of a queue that has refused so much.
+    case $ended in 0 | 1[3-9]?) doubled=$((doubled + 1));; esac
     echo "$named: not made: $(name_it $files_wanted "$@") $why; it is run again ($round of ${RETRIES:-2})" >&2
   done
   not_made "$named" "$(name_it $files_wanted "$@")" "$why"

@@ -28,13 +28,17 @@ export NEEDS="$work/needs"
 made 'raw/{mem}'
 is "$(paste -sd' ' said)" '--mem=215M,--time=2:01:04,-c3 --mem=430M,--time=4:02:08,-c3' 'a stage'
 is "$(cat errors)" 'raw/{mem}: not made: sh ended with 0, but raw/{mem} is not there; RUN has lost the command; it is run again (1 of 2)' 'a line'
-# A file of no stage gets as much as the largest of each; a job what its list says; before a plan, 4 GB and an hour.
+# A file of no stage gets as much as the largest of each; a job what its list says; before a plan, 1 GB and half an hour.
 made preview
 is "$(head -1 said)" '--mem=1415M,--time=2:01:04,-c3' 'a preview'
 NEED='558 65' made job
 is "$(head -1 said)" '--mem=558M,--time=0:01:05,-c3' 'a job'
 NEEDS='' made plan
-is "$(head -1 said)" '--mem=4096M,--time=1:00:00,-c3' 'before there is a plan'
+is "$(head -1 said)" '--mem=1024M,--time=0:30:00,-c3' 'before there is a plan'
+# A command that a queue has refused gets no more.
+echo 'echo "$1" >> said; shift; [ $(wc -l < said) -gt 1 ] || exit 1; exec "$@"' > queue.sh
+made raw/b
+is "$(paste -sd' ' said)" '--mem=215M,--time=2:01:04,-c3 --mem=215M,--time=2:01:04,-c3' 'refused'
 # RUN without such words is left as it is.
 RUN='sh queue.sh a' made b
 is "$(paste -sd' ' said)" 'a a' 'no words'
