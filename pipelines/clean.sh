@@ -14,6 +14,8 @@ for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p'
   rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
+rm -rf state/slurm-*
+rmdir state 2> /dev/null
 rm -rf report/files   # what `make report` measures
 rmdir report 2> /dev/null
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null

@@ -14,7 +14,7 @@ if [ -z "$BIN" ]; then
   if [ -f "$TOP/CMakeLists.txt" ]; then BIN=$TOP/build/release/bin; else BIN=$(command -v scene-plan); BIN=${BIN%/*}; fi
 fi
 for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; done
-goal=$1 film=
+goal=$1 film='' slurm=''
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
 [ -z "$THREADS" ] || export TEMPOLUX_THREADS="$THREADS"
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
@@ -29,6 +29,13 @@ case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
   film) film=yes goal=demo;;
+  slurm)
+    command -v sbatch > /dev/null || { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
+    slurm=yes goal=demo
+    [ -n "$RUN" ] || RUN='srun -Q -n1 -c{threads} --mem={mem} --time={time}'
+    export THREADS="${THREADS:-1}"
+    [ "$GROUP" = segment ] || GROUP=frame
+    export RUN GROUP;;
 esac
 
 # The wish as options. The preset decides about empty variables.
@@ -115,6 +122,14 @@ if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 # With RUN, commands are joined into jobs first. What they leave, such as the copy of a frame that was removed, is made
 # by the rules as below.
 ran_jobs=
+slurm() {
+  ran_jobs=yes
+  (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$aside/jobs" || exit
+  [ -s "$aside/jobs" ] || { ran_jobs=; return 0; }
+  (cd "$OUT" && exec sh "$PIPELINES/slurm.sh" submit) & child=$!
+  wait "$child" || failed $?
+  child=
+}
 jobs() {
   export JOBS="$aside/jobs" PROGRESS="$aside/finished" UNIT=job
   (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$JOBS" || exit
@@ -138,7 +153,9 @@ failed() {
   (cd "$OUT" && sh "$PIPELINES/progress.sh" failed "$goal") >&2
   exit "$1"
 }
-[ -z "$RUN" ] || [ "$goal" != demo ] || [ "${GROUP:=stage}" = stage ] || jobs
+if [ -n "$slurm" ]; then slurm
+elif [ -n "$RUN" ] && [ "$goal" = demo ] && [ "${GROUP:=stage}" != stage ]; then jobs
+fi
 
 # The commands that will run are those that make -n prints. progress.sh counts them. If there are none, make need not
 # read a long plan once more.
