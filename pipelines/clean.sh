@@ -14,7 +14,7 @@ for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p'
   rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
-rm -rf state/slurm-*
+rm -rf state/slurm-* state/.slurm-*
 rmdir state 2> /dev/null
 rm -rf report/files   # what `make report` measures
 rmdir report 2> /dev/null

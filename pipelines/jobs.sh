@@ -5,6 +5,7 @@
 #                          NAME MEGABYTES SECONDS JOBS,BEFORE FILES OPTIONAL_FILES, divided by tabs
 #     jobs.sh needs        prints a line for each folder of files: FOLDER BYTES CPU_SECONDS of one command
 #     jobs.sh makefile     reads a list and prints rules of make for it
+#     jobs.sh forecast     prints how long all jobs take on NODES nodes of CORES processors, THREADS for each job
 #
 # Files that the same pictures need are made by one job. So the files of one picture, from the first that no other
 # picture needs to its frame, are a job; light that several pictures share is another one; no two jobs make the same
@@ -18,9 +19,9 @@
 
 # What commands have cost in this OUT, and where nothing has been measured yet, the estimate of the plan.
 needs() {
-  { sed -n 's|^ *{"file": "\([a-z]*\)/.*"cpu_s": \([^,]*\), "memory": \([0-9]*\)}.*|plan \1 \3 \2|p' "${PLAN_JSON:-plan.json}" |
+  { sed -n 's|^ *{"file": "\([a-z_]*\)/.*"cpu_s": \([^,]*\), "memory": \([0-9]*\)}.*|plan \1 \3 \2|p' "${PLAN_JSON:-plan.json}" |
       sort -u
-    sed -n 's|^\([a-z]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' "$PLAN"
+    sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' "$PLAN"
   } | awk '
     function value(line) { sub(/.*: */, "", line); return line + 0 }
     $1 == "plan" { memory[$2] = $3; cpu[$2] = $4; next }
@@ -41,7 +42,7 @@ needs() {
 list() {
   segments=$(sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "${PLAN_JSON:-plan.json}" | paste -d ' ' - - |
     tr '\n' ' ')
-  { needs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" '
+  { needs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" -v measured="$MEASURED_ONLY" '
     function there(file,   line) {
       if (!(file in known)) { known[file] = (getline line < file) >= 0; close(file) }
       return known[file]
@@ -118,15 +119,61 @@ list() {
       for (j = 1; j <= jobs; ++j) {
         key = keys[j]
         if (!computes[key]) continue
-        tell(name[key], 1.5 * most[key] / 1e6 + 64, 2 * seconds[key] + 60, before[name[key]], makes[key], also[key])
+        tell(name[key], most[key], seconds[key], before[name[key]], makes[key], also[key])
         all = all " " name[key]
         if (most[key] > largest) largest = most[key]
       }
-      if (files || !there(sheet)) tell("last", 1.5 * largest / 1e6 + 64, 60 + shown, all, " demo", "")
+      if (files || !there(sheet)) tell("last", largest, shown / 50, all, " demo", "")
     }
-    function tell(name, megabytes, seconds, jobs, makes, also) {
+    function tell(name, bytes, seconds, jobs, makes, also) {
       sub(/^ /, "", jobs); sub(/^ /, "", makes); sub(/^ /, "", also)
-      printf "%s\t%d\t%d\t%s\t%s\t%s\n", name, megabytes + 1, seconds + 1, jobs, makes, also
+      if (measured) printf "%s\t%d\t%.3f\t%s\t%s\n", name, bytes / 1e6 + 1, seconds, jobs, makes
+      else printf "%s\t%d\t%d\t%s\t%s\t%s\n", name, 1.5 * bytes / 1e6 + 65, 2 * seconds + 61, jobs, makes, also
+    }'
+}
+
+# A job starts as soon as a place is free and what it reads is there, in the order of the list, as in a queue. It takes
+# its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
+forecast() {
+  MEASURED_ONLY=yes list | awk -F '\t' -v nodes="$NODES" -v cores="$CORES" -v threads="${THREADS:-1}" '
+    { name[++jobs] = $1; memory[jobs] = $2; takes[jobs] = $3 / threads; number[$1] = jobs; before[jobs] = $4; sum += $3 }
+    END {
+      for (j = 1; j <= jobs; ++j) {
+        waits[j] = split(before[j], list, " ")
+        for (i = 1; i <= waits[j]; ++i) after[number[list[i]]] = after[number[list[i]]] " " j
+        if (memory[j] > largest) largest = memory[j]
+      }
+      places = nodes * int(cores / threads)
+      while (1) {
+        for (j = 1; j <= jobs && running < places; ++j)
+          if (!(j in ends) && waits[j] == 0) { ends[j] = now + takes[j]; runs[j]; ++running }
+        if (!running) break
+        next_end = -1
+        for (j in runs) if (next_end < 0 || ends[j] < next_end) next_end = ends[j]
+        now = next_end
+        for (j in runs) if (ends[j] <= now) ended[j]
+        for (j in ended) {
+          delete runs[j]; delete ended[j]; --running
+          n = split(after[j], list, " ")
+          for (i = 1; i <= n; ++i) --waits[list[i]]
+          if (ends[j] >= now) final = j
+        }
+      }
+      for (j = 1; j <= jobs; ++j) longest(j)
+      chain = ""; end = 0
+      for (j = 1; j <= jobs; ++j) if (path[j] > path[end]) end = j
+      for (j = end; j; j = through[j]) chain = name[j] (chain ? ", " : "") chain
+      printf "%d jobs on %d x %d processors, %d for each job: %.1f s, %.0f %% of the processors busy\n", jobs, nodes, cores,
+        threads, now, (now > 0 ? 100 * sum / (now * nodes * cores) : 100)
+      printf "not less than %.1f s on any number, the longest chain of jobs: %s\n", path[end], chain
+      printf "memory of a job: up to %d MB; of a node: up to %d MB\n", largest, largest * int(cores / threads)
+    }
+    function longest(j,   i, n, list) {   # sets path[j]: the seconds from the start to the end of this job at best
+      if (j in path) return path[j]
+      path[j] = 0
+      n = split(before[j], list, " ")
+      for (i = 1; i <= n; ++i) if (longest(number[list[i]]) > path[j]) { path[j] = path[number[list[i]]]; through[j] = number[list[i]] }
+      return path[j] += takes[j]
     }'
 }
 
@@ -136,6 +183,6 @@ makefile() {
 }
 
 case $1 in
-  list | needs | makefile) $1;;
-  *) echo "jobs.sh: '$1' is none of list, needs, makefile" >&2; exit 2;;
+  list | needs | makefile | forecast) $1;;
+  *) echo "jobs.sh: '$1' is none of list, needs, makefile, forecast" >&2; exit 2;;
 esac

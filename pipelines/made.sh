@@ -177,4 +177,10 @@ answer() {
   return $answer_code
 }
 
-case ${0##*/} in made.sh) made "$@";; esac
+# finished FILE: with RUN, words about the command that has made it.
+finished() {
+  [ -z "$RUN" ] || [ -n "$V" ] || [ -z "$PROGRESS" ] || [ "$1" = report/index.html ] ||
+    sh "$PIPELINES/progress.sh" say "$1"
+}
+
+case ${0##*/} in made.sh) made "$@" && finished "$1";; esac

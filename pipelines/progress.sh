@@ -3,13 +3,14 @@
 #
 #     progress.sh begin        how much there is to do
 #     progress.sh job NAME     after a job (jobs.sh):  [12/49] 0:41, about 4:50 left: frame 3, done
-#     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
+#     progress.sh say FILE     before the command that makes FILE, with RUN after it:
+#                              [12/97] 0:41, about 4:50 left: frame 3, pixels
 #     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
 #     progress.sh failed GOAL  after a make that failed: what was made, which file was not and why
 #
-# The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
-# WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the first one began (date
-# +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
+# The environment has PROGRESS, a file that gets a line for each command that has begun (with RUN: has ended); TOTAL,
+# the number of commands; WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the
+# first one began (date +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
 : "${PLAN:=plan.mk}" "${PLAN_JSON:=plan.json}"
 clock() {
   if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
@@ -36,7 +37,7 @@ say() {
   [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
   passed=$(($(date +%s) - BEGAN))
   left=
-  [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
+  [ "$passed" -lt 10 ] || left=$(sed "${RUN:+#}\$d" "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
     '$1 > .1 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
   [ -z "$left" ] || left=", about $(clock "$left") left"
   echo "[$((n))/$TOTAL] $(clock "$passed")$left: $(in_words "$1")"

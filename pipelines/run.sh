@@ -23,6 +23,7 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
+case $NODES,$CORES,$THREADS in *[!0-9,]* | 0* | *,0*) echo "NODES=$NODES CORES=$CORES THREADS=$THREADS: give numbers above 0" >&2; exit 2;; esac
 case $GROUP in '' | frame | segment | stage) ;; *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;; esac
 case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
@@ -81,7 +82,19 @@ estimate() {   # makes the first picture at two small sizes; prints options of s
   # A plan in OUT says from now on what its commands cost.
   [ ! -f "$OUT/state/inputs" ] || { cp "$aside/costs.json" "$OUT/state" && rm "$OUT/state/inputs"; }
 }
-if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
+forecast() {   # the same run on NODES machines of CORES processors; options of scene-plan
+  mkdir -p "$aside/whole/state" && cp "$aside/costs.json" "$aside/whole/state" || exit 3
+  wanted=forecast
+  made "$aside/whole/plan.mk" -- $RUN "$BIN/scene-plan" "$@" -q -o "$aside/whole" || exit
+  [ "$GROUP" = segment ] || export GROUP=frame
+  (cd "$aside/whole" && PLAN=plan.mk PLAN_JSON=plan.json NODES=${NODES:-1} CORES=${CORES:-$(nproc)} \
+    sh "$PIPELINES/jobs.sh" forecast)
+}
+if [ "$goal" = estimate ]; then
+  estimate "$@"
+  [ -z "$NODES$CORES" ] || forecast "$@"
+  exit
+fi
 if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which is removed
   [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
   echo "$RUN $BIN/scene-plan $* -o $OUT"
@@ -108,6 +121,8 @@ else
   plan=state/.plan.mk.tmp.$(uname -n).$$
   trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
   export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
+  # Copies of makes that were killed.
+  (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
   cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
   exec 7>&-
 fi

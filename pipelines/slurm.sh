@@ -10,11 +10,24 @@
 # their own; two makes with equal wishes run one after the other.
 . "${0%/*}/made.sh"
 
+# patiently COMMAND...: again while Slurm's controller does not answer, for ten minutes.
+patiently() {
+  tried=0
+  until "$@"; do
+    tried=$((tried + 1))
+    [ $tried -lt 120 ] || return 1
+    [ $tried -gt 1 ] || echo "make slurm: $1 has failed; it is tried again for ten minutes" >&2
+    ending sleep 5
+  done
+}
+
 tasks_alive() {   # prints the tasks of this plan that are in the queue: TASK STATE REASON
   ids=$(sed 's/_.*//' "$work/tasks" 2> /dev/null | sort -un | paste -sd,)
-  [ -z "$ids" ] || squeue -h -r -u "$(id -un)" -o '%i %t %r' | awk -v ids="$ids" '
+  [ -n "$ids" ] || return 0
+  patiently squeue -h -r -u "$(id -un)" -o '%i %t %r' > "$work/queue" || exit 3
+  awk -v ids="$ids" '
     BEGIN { n = split(ids, list, ","); for (i = 1; i <= n; ++i) ours[list[i]] }
-    { id = $1; sub(/_.*/, "", id); if (id in ours) print }'
+    { id = $1; sub(/_.*/, "", id); if (id in ours) print }' "$work/queue"
 }
 
 # The next array: jobs without a task whose predecessors all have one. Prints its names, after a line with the
@@ -50,7 +63,8 @@ submit() {
   JOBS=$work/jobs.$round.$$
   sh "$PIPELINES/jobs.sh" list > "$JOBS"
   # A job whose files a task in the queue makes has that task.
-  tasks_alive | cut -d' ' -f1 > "$work/alive"
+  tasks_alive > "$work/alive.all" || return
+  cut -d' ' -f1 "$work/alive.all" > "$work/alive"
   awk -F '\t' -v alive="$work/alive" -v tasks="$work/tasks" '
     BEGIN {
       while ((getline one < alive) > 0) lives[one]
@@ -68,6 +82,7 @@ submit() {
     read -r after memory time < "$work/next"
     [ "$after" = - ] && after= || after=--dependency=afterok$after
     time=$(((time << round) / 60 + 1))
+    patiently squeue -h -t S > "$work/queue" || return   # the controller answers
     id=$(JOBS=$JOBS sbatch --parsable -J "tempolux-$(head -n 1 "$names")" -a "1-$(wc -l < "$names")" $after \
       --kill-on-invalid-dep=yes --requeue -n1 -c"${THREADS:-1}" --mem="$((memory << round))" --time="$time" \
       --open-mode=append -o "$work/said.%A_%a" --wrap "exec sh \"\$PIPELINES/slurm.sh\" task $names") || return
@@ -83,7 +98,7 @@ submit() {
 watch() {
   told='' sheet=$(sed -n 's|^sheet.png: . \([^ ]*\) .*|\1|p' "$PLAN")
   while :; do
-    tasks_alive > "$work/alive"
+    tasks_alive > "$work/alive" || exit 3
     while read -r name task; do
       [ -n "$task" ] && ! grep -q "^$task " "$work/alive" && ! grep -qx "$name" "$PROGRESS" || continue
       made=yes
@@ -102,13 +117,14 @@ watch() {
   done
 }
 
-cancel() { tasks_alive | sed 's/_.*//' | sort -u | xargs -r scancel 2> /dev/null; stop; }
+cancel_all() { sed 's/_.*//' "$work/tasks" | sort -u | xargs -r scancel 2> /dev/null; }
+cancel() { cancel_all; stop; }
 
 submit_all() {
   work=state/slurm-$( (echo "$GROUP"; cat "$PLAN") | cksum | tr ' ' -)
-  mkdir -p "$work" || exit 3
-  exec 6> "$work/.lock"
+  exec 6> "state/.${work#state/}"
   ! command -v flock > /dev/null || flock -n 6 || { echo 'another make watches these jobs; this one waits for it'; flock 6; }
+  mkdir -p "$work" || exit 3
   cp "$PLAN" "$work/plan.mk" && cp "$PLAN_JSON" "$work/plan.json" || exit 3
   export OUR_ENVIRONMENT="$ENVIRONMENT"   # sbatch sets ENVIRONMENT=BATCH in a job
   export PLAN="$work/plan.mk" PLAN_JSON="$work/plan.json" JOBS PROGRESS RETRIES WAIT BEGAN
@@ -118,7 +134,7 @@ submit_all() {
   trap cancel INT TERM
   while :; do
     : > "$PROGRESS"
-    submit || { tasks_alive | sed 's/_.*//' | sort -u | xargs -r scancel; exit 3; }
+    submit || { cancel_all; exit 3; }
     [ -s "$JOBS" ] || break
     [ $round -gt 0 ] || TOTAL=$(wc -l < "$JOBS") sh "$PIPELINES/progress.sh" begin
     watch
