@@ -11,9 +11,11 @@ ours="$ours|.*[.](csv|md|html|svg|png|gp)"
 for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p' plan.json); do   # of all stages
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
-  rm -f "$folder/.lock" "$folder/.makes" "$folder"/.*.tmp.*
+  rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
+rm -rf state/slurm-* state/.slurm-*
+rmdir state 2> /dev/null
 rm -rf report/files   # what `make report` measures
 rmdir report 2> /dev/null
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null

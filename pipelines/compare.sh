@@ -3,11 +3,13 @@
 # A, B: folders OUT of make; PAGE: the HTML file to write.
 #
 # The page contains its pictures and loads no other file. Both runs are shown at one exposure, the one that suits A's
-# first frame. The environment has BIN, the folder of the tools.
+# first frame. The environment has BIN, the folder of the tools, and RUN.
+. "${0%/*}/made.sh"
 a=$1 b=$2 page=$3
 [ -d "$a/frames" ] || { echo "compare.sh: $a: has no frames; run make with OUT=$a first" >&2; exit 2; }
 [ -d "$b/frames" ] || { echo "compare.sh: $b: has no frames; OTHER=FOLDER names the OUT of another run" >&2; exit 2; }
-work=$(mktemp -d) || exit 3
+work=$a/.compare.tmp.$(uname -n).$$   # RUN may run a command on another machine, which sees OUT
+mkdir "$work" || exit 3
 trap 'rm -rf "$work"' EXIT
 common=
 for file in "$a"/frames/*.exr; do
@@ -16,10 +18,12 @@ for file in "$a"/frames/*.exr; do
 done
 [ -n "$common" ] || { echo "compare.sh: $a and $b have no frame in common" >&2; exit 2; }
 first=${common# } first=${first%% *}
-exposure=$("$BIN/tempolux-info" "$a/frames/$first.exr" --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$/\1/p')
+wanted=$page part=$work/facts
+answer 1 -- $RUN "$BIN/tempolux-info" "$a/frames/$first.exr" --json || exit
+exposure=$(echo "$answered" | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$/\1/p')
 text() { printf %s "$1" | sed 's/&/\&amp;/g; s/</\&lt;/g'; }
 picture() {   # picture RUN FOLDER FRAME
-  "$BIN/tempolux-info" --png "$work/p.png" --exposure "$exposure" "$2/frames/$3.exr" || exit 3
+  made "$work/p.png" -- $RUN "$BIN/tempolux-info" --png "$work/p.png" --exposure "$exposure" "$2/frames/$3.exr" || exit 3
   printf '<img class=%s alt="" src="data:image/png;base64,' "$1"
   base64 -w 0 "$work/p.png"
   echo '">'

@@ -2,23 +2,26 @@
 # progress.sh -- prints the progress of make. run.sh and stages.mk run it inside OUT.
 #
 #     progress.sh begin        how much there is to do
-#     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
+#     progress.sh job NAME     after a job (jobs.sh):  [12/49] 0:41, about 4:50 left: frame 3, done
+#     progress.sh say FILE     before the command that makes FILE, with RUN after it:
+#                              [12/97] 0:41, about 4:50 left: frame 3, pixels
 #     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
 #     progress.sh failed GOAL  after a make that failed: what was made, which file was not and why
 #
-# The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
-# WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the first one began (date
-# +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
+# The environment has PROGRESS, a file that gets a line for each command that has begun (with RUN: has ended); TOTAL,
+# the number of commands; WEIGHT, their estimated CPU seconds in all (progress.sh weigh); BEGAN, the time at which the
+# first one began (date +%s); FAILED, a file with a line for each command that has not made its file (made.sh).
+: "${PLAN:=plan.mk}" "${PLAN_JSON:=plan.json}"
 clock() {
   if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
   else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
 }
 
-# Prints a line for each stage of plan.json: FOLDER PART CPU_SECONDS WORDS.
+# Prints a line for each stage of the plan: FOLDER PART CPU_SECONDS WORDS.
 stages() {
   awk -F '"' '$2 == "segments" { exit } $2 == "folder" { folder = $4 } $2 == "part" { part = $4 }
     $2 == "words" { words = $4 }
-    $2 == "cpu_s" { gsub(/[: ,]/, "", $3); print folder, part, $3, words }' plan.json
+    $2 == "cpu_s" { gsub(/[: ,]/, "", $3); print folder, part, $3, words }' "$PLAN_JSON"
 }
 
 # Estimated CPU seconds of the commands for the file names on standard input.
@@ -34,10 +37,27 @@ say() {
   [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
   passed=$(($(date +%s) - BEGAN))
   left=
-  [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
+  [ "$passed" -lt 10 ] || left=$(sed "${RUN:+#}\$d" "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
     '$1 > .1 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
   [ -z "$left" ] || left=", about $(clock "$left") left"
   echo "[$((n))/$TOTAL] $(clock "$passed")$left: $(in_words "$1")"
+}
+
+job() {   # after a job: JOBS is the list, a line of PROGRESS a job that has ended
+  [ -n "$PROGRESS" ] || return 0
+  echo "$1" >> "$PROGRESS"
+  awk -F '\t' -v jobs="$JOBS" -v name="$1" -v began="$BEGAN" -v now="$(date +%s)" '
+    { done[$1]; ++n }
+    END {
+      while ((getline < jobs) > 0) { ++all; work += $3; if ($1 in done) made += $3; if ($1 == name) makes = $5 }
+      split(makes, file, " ")
+      left = now - began >= 10 && made > .1 * work && made < work ? (now - began) * (work - made) / made : 0
+      printf "%d %d %d %d %s\n", n, all, now - began, left, file[1]
+    }' "$PROGRESS" | {
+    read -r n all passed left file
+    [ "$left" = 0 ] && left= || left=", about $(clock "$left") left"
+    echo "[$n/$all] $(clock "$passed")$left: $(in_words "$file")"
+  }
 }
 
 in_words() {   # a file inside OUT, by the frame that was asked for
@@ -45,13 +65,17 @@ in_words() {   # a file inside OUT, by the frame that was asked for
   frame=${name%%[-.]*}
   words=$(stages | sed -n "s/^$folder //p")   # PART CPU_SECONDS WORDS
   part=${words%% *} words=${words#* * }
+  case $1 in
+    demo) echo 'sheet and previews'; return;;
+    shown/*) words=done part=frames;;
+  esac
   case $frame in
     *[!0-9+]*) echo "$folder"; return;;
     *+*) echo "frames $(number "${frame%+*}") to $(number "${frame#*+}"), $words"; return;;
   esac
   # A frame that looks the same was asked for, or frames that share its light.
-  if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then
-    alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" plan.mk | head -1)
+  if ! grep -q "^frames/${frame}[.]exr:" "$PLAN"; then
+    alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" "$PLAN" | head -1)
     case $alike,$part in
       ?*,*) frame=$alike;;
       ,frames | ,report) ;;   # a neighbour, a key
@@ -63,7 +87,7 @@ in_words() {   # a file inside OUT, by the frame that was asked for
 
 number() { n_=${1#"${1%%[!0]*}"}; echo "${n_:-0}"; }   # 0012 -> 12
 
-count() { sed -n "s/^$1 := //p" plan.mk | wc -w; }
+count() { sed -n "s/^$1 := //p" "$PLAN" | wc -w; }
 
 of() { [ "$1" = 1 ] && echo "1 $2" || echo "$1 $2s"; }   # of 3 frame -> 3 frames
 
@@ -73,13 +97,13 @@ ways() {
     BEGIN { words["paths"] = "camera paths"; words["gather"] = "gathering"; words["records"] = "records" }
     $2 == "indirect" { way = words[$3] }
     $2 == "texture_width" { way = $3 > 0 ? "light textures" : way; if (!seen[way]++) all = all (all ? " and " : "") way }
-    END { if (all) print "; indirect light by " all }' plan.json
+    END { if (all) print "; indirect light by " all }' "$PLAN_JSON"
 }
 
 begin() {
-  echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)$(ways)"
-  [ "$METHOD" != walkthrough ] || grep -q '"walkthrough": true' plan.json ||
-    sed -n '/"ibr-warp": "/ { s/.*: "\(.*\)",*$/METHOD=walkthrough: no frame is warped: \1/; p; q; }' plan.json
+  echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" "${UNIT:-command}") to run (V=1 shows them)$(ways)"
+  [ "$METHOD" != walkthrough ] || grep -q '"walkthrough": true' "$PLAN_JSON" ||
+    sed -n '/"ibr-warp": "/ { s/.*: "\(.*\)",*$/METHOD=walkthrough: no frame is warped: \1/; p; q; }' "$PLAN_JSON"
 }
 
 # The largest share of the pixels in which a viewer sees noise, in percent, if `make measure` has measured pictures of
@@ -87,7 +111,7 @@ begin() {
 measured() {
   [ -f measured.json ] || return 0
   sed -n 's/.*"picture": "\([^"]*\)", "tried": \[{"photons": 0, "aqm": \([0-9.e+-]*\)}\].*/\1 \2/p' measured.json |
-    while read -r picture share; do ! grep -qF "\"$picture\"" plan.json || echo "$share"; done |
+    while read -r picture share; do ! grep -qF "\"$picture\"" "$PLAN_JSON" || echo "$share"; done |
     sort -g | awk 'END { if (NR) printf "%.1f", 100 * $1 }'
 }
 
@@ -110,6 +134,16 @@ advice() {
   esac
 }
 
+# Sets `audit` to the account of the frames; it may be empty. The statistics show that RUN has run the command.
+account() {
+  . "${0%/*}/made.sh"
+  ran=state/.account.tmp.$(uname -n).$$ text=$ran.text wanted=audit
+  trap 'rm -f "$ran" "$text"' EXIT
+  # shellcheck disable=SC2086
+  made "$ran" -- $RUN "$BIN/tempolux-info" --account $frames --stats "$ran" > "$text" || return
+  audit=$(cat "$text")
+}
+
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
 # the frames. The audit is the bias that frames report of their own light. A warning follows if a
@@ -119,12 +153,11 @@ end() {
   asked=$ERROR
   [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
   frames=$(sed -n 's/^frames := //p' plan.mk)
-  # shellcheck disable=SC2086
-  audit=$("$BIN/tempolux-info" --account $frames)
-  [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' plan.mk
+  account || return
+  [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' "$PLAN"
     then audit='not audited, too few of the tested paths bring light'
     else audit='not audited, as no preview is'; fi
-  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk |
+  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' "$PLAN" |
     grep -v "$(stages | sed -n 's|^\([a-z_]*\) report .*|^\1/|p')" |
     awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
       -v seen="$(measured)" -v asked="$asked" '
@@ -172,7 +205,7 @@ end() {
 }
 
 shown() {   # number of frames that show what the plan wants
-  awk '/^frames\/[^:]*[.]exr: [|] shown/ { print $3 }' "${PLAN:-plan.mk}" |
+  awk '/^frames\/[^:]*[.]exr: [|] shown/ { print $3 }' "$PLAN" |
     while read -r marker; do [ ! -e "$marker" ] || echo; done | wc -l
 }
 
@@ -189,6 +222,7 @@ failed() {   # failed GOAL
 }
 
 case $1 in
+  job) job "$2";;
   say) say "$2";;
   failed) failed "$2";;
   advice) advice "$2" "$3";;

@@ -14,18 +14,29 @@ if [ -z "$BIN" ]; then
   if [ -f "$TOP/CMakeLists.txt" ]; then BIN=$TOP/build/release/bin; else BIN=$(command -v scene-plan); BIN=${BIN%/*}; fi
 fi
 for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; done
-goal=$1 film=
+goal=$1 film='' slurm=''
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
+[ -z "$THREADS" ] || export TEMPOLUX_THREADS="$THREADS"
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
 quiet=; case "${MAKEFLAGS%% *}" in *s*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && quiet=yes ;; esac
 export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
+case $NODES,$CORES,$THREADS in *[!0-9,]* | 0* | *,0*) echo "NODES=$NODES CORES=$CORES THREADS=$THREADS: give numbers above 0" >&2; exit 2;; esac
+case $GROUP in '' | frame | segment | stage) ;; *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;; esac
+case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
   film) film=yes goal=demo;;
+  slurm)
+    command -v sbatch > /dev/null || { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
+    slurm=yes goal=demo
+    [ -n "$RUN" ] || RUN='srun -Q -n1 -c{threads} --mem={mem} --time={time}'
+    export THREADS="${THREADS:-1}"
+    [ "$GROUP" = segment ] || GROUP=frame
+    export RUN GROUP;;
 esac
 
 # The wish as options. The preset decides about empty variables.
@@ -49,8 +60,13 @@ set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes
 
 . "${0%/*}/made.sh"
 plan=plan.mk folder=$OUT
-aside=$(mktemp -d) || exit 3
-trap 'rm -rf "$aside"' EXIT
+if [ "$goal" = estimate ] && [ -n "$RUN" ]; then   # other machines see OUT, and not /tmp
+  mkdir -p "$OUT/state" && aside=$OUT/state/.estimate.tmp.$(uname -n).$$ && mkdir "$aside" || exit 3
+  trap 'rm -rf "$aside"; rmdir "$OUT/state" "$OUT" 2> /dev/null' EXIT
+else
+  aside=$(mktemp -d) || exit 3
+  trap 'rm -rf "$aside"' EXIT
+fi
 export FAILED="$aside/failed" CLAIMS="$aside/claims"
 mkdir "$CLAIMS" || exit 3
 makes() {   # runs in a subshell; after an error all that does not need the lost file is made (-k)
@@ -58,13 +74,27 @@ makes() {   # runs in a subshell; after an error all that does not need the lost
   exec ${MAKE:-make} -k --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
-  ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
+  wanted=estimate
+  made "$aside/small.mk" "$aside/large.mk" -- $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
+  wanted=
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside" || exit
   # A plan in OUT says from now on what its commands cost.
   [ ! -f "$OUT/state/inputs" ] || { cp "$aside/costs.json" "$OUT/state" && rm "$OUT/state/inputs"; }
 }
-if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
+forecast() {   # the same run on NODES machines of CORES processors; options of scene-plan
+  mkdir -p "$aside/whole/state" && cp "$aside/costs.json" "$aside/whole/state" || exit 3
+  wanted=forecast
+  made "$aside/whole/plan.mk" -- $RUN "$BIN/scene-plan" "$@" -q -o "$aside/whole" || exit
+  [ "$GROUP" = segment ] || export GROUP=frame
+  (cd "$aside/whole" && PLAN=plan.mk PLAN_JSON=plan.json NODES=${NODES:-1} CORES=${CORES:-$(nproc)} \
+    sh "$PIPELINES/jobs.sh" forecast)
+}
+if [ "$goal" = estimate ]; then
+  estimate "$@"
+  [ -z "$NODES$CORES" ] || forecast "$@"
+  exit
+fi
 if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which is removed
   [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
   echo "$RUN $BIN/scene-plan $* -o $OUT"
@@ -78,14 +108,23 @@ else
     ran=$OUT/state/planned.json
     set -- "$@" --stats "$ran"
   fi
+  # A second make in OUT waits with its plan until this one has a copy.
+  if command -v flock > /dev/null && [ -d "$OUT/state" ] && : > "$OUT/state/.planning"; then
+    exec 7> "$OUT/state/.planning"
+    flock 7
+  fi 2> /dev/null
   wanted=plan.mk
   # shellcheck disable=SC2086
   made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
   wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
   plan=state/.plan.mk.tmp.$(uname -n).$$
-  trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
-  cp "$OUT/plan.mk" "$OUT/$plan" || exit
+  trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
+  export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
+  # Copies of makes that were killed.
+  (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
+  cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
+  exec 7>&-
 fi
 [ "$goal" = plan ] && exit
 case $goal in frames/*)
@@ -94,6 +133,44 @@ case $goal in frames/*)
 esac
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
+
+# With RUN, commands are joined into jobs first. What they leave, such as the copy of a frame that was removed, is made
+# by the rules as below.
+ran_jobs=
+slurm() {
+  ran_jobs=yes
+  (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$aside/jobs" || exit
+  [ -s "$aside/jobs" ] || { ran_jobs=; return 0; }
+  (cd "$OUT" && exec sh "$PIPELINES/slurm.sh" submit) & child=$!
+  wait "$child" || failed $?
+  child=
+}
+jobs() {
+  export JOBS="$aside/jobs" PROGRESS="$aside/finished" UNIT=job
+  (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$JOBS" || exit
+  [ -s "$JOBS" ] || return 0
+  sh "$PIPELINES/jobs.sh" makefile < "$JOBS" > "$aside/jobs.mk"
+  : > "$PROGRESS"
+  TOTAL=$(wc -l < "$JOBS") BEGAN=$(date +%s) ran_jobs=yes
+  export TOTAL BEGAN
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+  ending makes_jobs || failed $?
+}
+makes_jobs() { exec ${MAKE:-make} -k --no-print-directory -f "$aside/jobs.mk" -C "$OUT" all; }
+case $RUN in *'{'*) export NEEDS="$aside/needs"; (cd "$OUT" && sh "$PIPELINES/jobs.sh" needs) > "$NEEDS";; esac
+# Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
+exec 8> "$OUT/state/.makes"
+alone() { ! command -v flock > /dev/null || flock "$@" 8; }
+alone -s
+failed() {
+  alone -n -x ||
+    echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" failed "$goal") >&2
+  exit "$1"
+}
+if [ -n "$slurm" ]; then slurm
+elif [ -n "$RUN" ] && [ "$goal" = demo ] && [ "${GROUP:=stage}" != stage ]; then jobs
+fi
 
 # The commands that will run are those that make -n prints. progress.sh counts them. If there are none, make need not
 # read a long plan once more.
@@ -104,31 +181,21 @@ sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' "$aside/commands" > "$PROGRES
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(cd "$OUT" && sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"
 export TOTAL WEIGHT PROGRESS BEGAN
-[ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+[ "$TOTAL" = 0 ] || (cd "$OUT" && UNIT='' sh "$PIPELINES/progress.sh" begin)
 if [ "$TOTAL" -ge 500 ]; then   # a long run: estimate hours and disk first, by short runs of each stage
   (estimate "$@")
   df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
 fi
-# Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
-exec 8> "$OUT/state/.makes"
-alone() { ! command -v flock > /dev/null || flock "$@" 8; }
-alone -s
-failed() {
-  alone -n -x ||
-    echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
-  (cd "$OUT" && PLAN=$plan sh "$PIPELINES/progress.sh" failed "$goal") >&2
-  exit "$1"
-}
 if [ -s "$aside/commands" ]; then
   ending makes "$goal" -C "$folder" || failed $?
-elif [ -z "$quiet" ]; then
+elif [ -z "$quiet$ran_jobs" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
 # Raw frames that a killed make had filtered and not removed yet.
 raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
-[ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
-[ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
+[ -z "$raw" ] || (cd "$OUT" && sh "$PIPELINES/follow.sh" read $raw)
+[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
 if [ "$goal" = report ]; then
   echo "look at $OUT/report/index.html"
   # Curves and steadiness need the scripts of the sources.

@@ -25,8 +25,11 @@ part_of() {   # a name that make tidy knows
 # The text of a marker: digests of the shown frames, and $1. A command may have made the same picture again: then the
 # text is equal and nothing is shown anew.
 shows() {
-  said=$1; shift
-  now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"
+  said=$1 wanted=$file; shift
+  part_of "$marker"
+  answer $# -- $RUN "$BIN/tempolux-info" --digest "$@" || exit
+  part=
+  now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $(echo "$answered" | cut -d' ' -f1 | cksum)"
 }
 is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
 
@@ -42,14 +45,14 @@ publish() {   # publish OLD_MARKER...
 now=
 case $marker in
   shown/exposure-*)
-    ! given_up "$marker" || exit 3
     part_of "$marker"
-    planned=$(sed -n 's/^stops := *//p' "$PLAN")
-    [ -z "$planned" ] || { echo "$planned" > "$part" && mv -f "$part" "$marker"; exit; }
-    [ -z "$V" ] || show $RUN "$BIN/tempolux-info" "$1" --json >&2
-    ending $RUN "$BIN/tempolux-info" "$1" --json > "$part" || exit
-    stops=$(sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' "$part")
-    [ -n "$stops" ] || { not_made "$marker" tempolux-info 'has printed no exposure'; exit 3; }
+    stops=$(sed -n 's/^stops := *//p' "$PLAN")
+    if [ -z "$stops" ]; then
+      wanted=$marker
+      answer 1 -- $RUN "$BIN/tempolux-info" "$1" --json || exit
+      stops=$(echo "$answered" | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p')
+      [ -n "$stops" ] || { not_made "$marker" tempolux-info 'has printed no exposure'; exit 3; }
+    fi
     echo "$stops" > "$part" && mv -f "$part" "$marker";;
   shown/sheet-*)
     file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=

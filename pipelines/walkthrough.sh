@@ -148,6 +148,7 @@ marks() {
 }
 
 case $command in
-  interval | frame | log | marks) $command "$@";;
+  interval | frame) $command "$@"; finished "$1";;
+  log | marks) $command "$@";;
   *) echo "walkthrough.sh: '$command' is none of interval, frame, log, marks" >&2; exit 2;;
 esac

@@ -39,7 +39,7 @@ add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check 
 add_test(NAME pipelines.advice COMMAND sh tests/pipelines/advice.sh WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 
 # Stages together, run by make at the top of the tree.
-foreach(script rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
+foreach(script run_words rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
                scenes leaving_out walkthrough filter dynamic temporal preview split smoke own_scene)
   add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
@@ -62,11 +62,14 @@ add_test(NAME pipelines.every_processor COMMAND python3 -B tests/pipelines/every
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.every_processor PROPERTIES TIMEOUT 1200 SKIP_RETURN_CODE 77)
 set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes PROPERTIES TIMEOUT 600)
-add_test(NAME pipelines.interrupted COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan> --only frames
+add_test(NAME pipelines.interrupted COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan>
+         --only frames,lost,again,cut,late,killed,stopped,disk
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.interrupted_methods COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan>
-         --only window,walkthrough,preview,smoke,temporal WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.interrupted pipelines.interrupted_methods PROPERTIES TIMEOUT 300)
+         --only window,walkthrough,preview,smoke,temporal,lost,again,disk WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.jobs COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan> --only jobs
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.interrupted pipelines.interrupted_methods pipelines.jobs PROPERTIES TIMEOUT 600)
 add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}

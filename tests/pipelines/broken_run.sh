@@ -24,6 +24,8 @@ case ${1##*/},$output in
   *,?*) kind=${kind}sheet;;
   *,) kind=${kind}exposure;;
 esac
+case " $* " in *" --digest "*) kind=${1##*/}:digest;; *" --account "*) kind=${1##*/}:account;; esac
+case $2 in */job.sh) kind=job:;; esac
 case $output in *.part.*) kind=$kind-part;; *.raw.exr) kind=$kind-raw;; esac
 case " $* " in *" --map static "*) kind=$kind-static;; *" --map dynamic "*) kind=$kind-dynamic;; *" --update "*) kind=$kind-update;; esac
 { echo "$kind"; echo "$*"; } > "$folder/$number/command"

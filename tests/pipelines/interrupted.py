@@ -6,6 +6,9 @@ Run at the top of the tree; BIN is the folder with the tools. Tiny scenes. make 
   lost         a wrapper in RUN ends with 0 without running one of the commands: make must fail and name the file, unless it shows the new
                pictures; the same command, typed again, gives the frames, previews and sheet of a clean run. With --long each single command of
                each method, else one command of each kind that no method before has
+  again        as above, but RUN may lose a command once (RETRIES=1): it is named and run again, and make gives what a clean run gives
+  jobs         commands joined into jobs, one for each frame, or for each segment (GROUP): the same pictures as alone, by fewer
+               commands; a job is lost, named, run again; with --long each single one
   cut, late    the file of a command is cut off: as above; it is seen a second later: make waits for it
   killed       one of the frame-renders is killed with -9: all other frames are shown, one is rendered the next time
   stopped      SIGINT to make's processes while raw frames wait for their filter: they are kept, and not rendered again
@@ -99,9 +102,10 @@ class Chain:
         return Path("pipelines/scenes/S1_cornell.glb").resolve()
 
     def command(self, out, sky=SKY, jobs=2, run=None, **more):
-        values = self.values | {"OUT": str(out), "SKY": sky, "WAIT": "0"} | ({"RUN": run} if run else {}) | more
-        if "WAIT" not in self.arguments.makefile.read_text():
-            del values["WAIT"]
+        values = self.values | {"OUT": str(out), "SKY": sky, "WAIT": "0", "RETRIES": "0"} | ({"RUN": run} if run else {}) | more
+        for name in ("WAIT", "RETRIES"):
+            if name not in self.arguments.makefile.read_text():
+                del values[name]
         return [
             "make",
             "-f",
@@ -179,37 +183,69 @@ class Chain:
         if left:
             self.wrong(f"{what}, then typed again: left are {left[:3]}")
 
-    def spoil(self, what, which):
+    def spoil(self, what, which, retries=0, **more):
         """One command is lost or its file is cut off. Returns True if there was such a command."""
         self.old_pictures()
-        code, text = self.make(self.out, run=self.broken(what, which), jobs=1)
+        code, text = self.make(self.out, run=self.broken(what, which), jobs=1, RETRIES=str(retries), **more)
         kind = self.spoiled()
         if not kind:
             return False
         tool = kind.split(":")[0]
-        title = f"{what}: {which} ({kind})"
+        title = " ".join([f"{what}: {which} ({kind}), RETRIES={retries}", *more.values()])
+        if retries:
+            if code or self.pictures(self.out) != self.clean:
+                self.wrong(f"{title}: exit {code}, or other pictures: {text[-400:]}")
+            if len(re.findall(rf"^[^ ]+: not made: {tool} .*; it is run again [(]1 of {retries}[)]$", text, re.M)) != 1:
+                self.wrong(f"{title}: not named once: {text[-400:]}")
+            return True
         if code == 0 and self.pictures(self.out) != self.clean:
             self.wrong(f"{title}: make says success and shows other pictures")
         elif code == 0:
             self.wrong(f"{title}: make does not notice")
         elif not re.search(rf"^[^ ]+: not made: {tool} ", text, re.M):
             self.wrong(f"{title}: not named: {text[-400:]}")
-        elif "Type the same command again" not in text and tool != "scene-plan":
+        elif "Type the same command again" not in text and kind not in ("scene-plan", "tempolux-info:account"):
             self.wrong(f"{title}: no last line: {text[-400:]}")
         self.again(title)
         return True
 
 
-def lost(chain, seen):
+def jobs(chain):
+    """Seen to fail: a job that leaves out what another one reads; light in two jobs; a job that asks for the files of make's own RUN."""
+    said = []
+    for group in ("frame", "segment"):
+        chain.old_pictures()
+        code, text = chain.make(chain.out, run=chain.broken("lost", "none"), jobs=2, GROUP=group)
+        commands = [words for _, words in chain.ran()]
+        if code or chain.pictures(chain.out) != chain.clean:
+            chain.wrong(f"GROUP={group}: exit {code}, or other pictures: {text[-600:]}")
+        joined = [words for words in commands if "/job.sh inside " in words]
+        others = [words for words in commands if "/job.sh inside " not in words]
+        if len(others) != 2 or len(commands) >= len(chain.commands):   # scene-plan and the account
+            chain.wrong(f"GROUP={group}: {len(joined)} jobs, and {others}")
+        code, text = chain.make(chain.out, run=chain.broken("lost", "none"), GROUP=group)
+        if code or len(chain.ran()) != 1:
+            chain.wrong(f"GROUP={group}, typed again: exit {code}, {chain.ran()[1:]}")
+        # The first command is that of scene-plan.
+        for number in range(2, len(joined) + 2) if chain.arguments.long else [2 if group == "frame" else len(joined) + 1]:
+            for retries in (0, 1):
+                chain.spoil("lost", number, retries, GROUP=group)
+        said.append(f"{len(joined)} jobs")
+    return f"{len(chain.commands)} commands as {' or '.join(said)}"
+
+
+def lost(chain, seen, retries=0):
     """Each command, or one of each kind that no method before had."""
     if chain.arguments.long:
         number = 1
-        while chain.spoil("lost", number):
+        while chain.spoil("lost", number, retries):
             number += 1
-        return f"{number - 1} commands lost"
+        return f"{number - 1} commands lost" + (" and run again" if retries else "")
     kinds = [k for k in dict.fromkeys(kind for kind, _ in chain.commands) if k not in seen]
+    if retries:   # the kinds have been lost one by one already
+        kinds = kinds[::4]
     seen.update(kinds)
-    return f"{sum(chain.spoil('lost', kind) for kind in kinds)} commands lost"
+    return f"{sum(chain.spoil('lost', kind, retries) for kind in kinds)} commands lost" + (" and run again" if retries else "")
 
 
 def cut(chain):
@@ -305,7 +341,8 @@ def disk(chain, frames):
 def tests_of(chain, seen):
     """{name: test} of a method."""
     frames, after = (24, 18) if chain.arguments.long else (6, 4)
-    tests = {"lost": lambda: lost(chain, seen)}
+    before = set(seen)
+    tests = {"lost": lambda: lost(chain, seen), "again": lambda: lost(chain, before, retries=1), "jobs": lambda: jobs(chain)}
     if chain.method == "frames":
         tests |= {"cut": lambda: cut(chain), "late": lambda: late(chain), "killed": lambda: killed(chain, frames),
                   "stopped": lambda: stopped(chain, frames, after)}
@@ -327,7 +364,7 @@ def main():
     parser.add_argument("bin", type=lambda p: Path(p).resolve())
     parser.add_argument("--long", action="store_true")
     parser.add_argument(
-        "--only", default="", help=", ".join([*METHODS, "lost", "cut", "late", "killed", "stopped", "disk"])
+        "--only", default="", help=", ".join([*METHODS, "lost", "again", "jobs", "cut", "late", "killed", "stopped", "disk"])
     )
     parser.add_argument("--makefile", type=lambda p: Path(p).resolve(), default=Path("Makefile.example").resolve())
     arguments = parser.parse_args()
@@ -342,7 +379,7 @@ def main():
         for method in methods:
             chain, began = Chain(Path(folder), method, arguments), time.monotonic()
             tests = {name: test for name, test in tests_of(chain, seen).items() if not wanted or name in wanted}
-            if {"lost", "cut", "late"} & tests.keys():
+            if {"lost", "again", "jobs", "cut", "late"} & tests.keys():
                 chain.prepare()
             for test in tests.values():
                 said = test()

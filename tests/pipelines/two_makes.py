@@ -93,6 +93,9 @@ def together(trial):
             said = make.communicate(timeout=120)[0].decode(errors="replace")
             if make.returncode:
                 trial.wrong(f"{what}: one ends with {make.returncode}: {said[-300:]}")
+            size = (trial.state if make is makes[0] else second)["variables"]["SIZE"]
+            if not re.search(rf" frames? of {size}: .* look at |Nothing to be done", said):
+                trial.wrong(f"{what}: the last line is not of {size}: {said[-300:]}")
         if second is trial.state and trial.frames(trial.out, trial.state) != trial.digests(trial.state):
             trial.wrong(f"{what}: other frames")
         trial.finish(f"{what}, then one alone")

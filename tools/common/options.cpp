@@ -210,7 +210,10 @@ void Tool::common_options(unsigned flags) {
       ->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096));
   leave_out_of_history(
-      bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
+      bytes_option("--max-memory", common.max_memory_bytes,
+                   "limit of memory, such as 300MiB; it counts reserved addresses, some 100 MiB more than a tool uses; "
+                   "0: none"))
+      ->envname("TEMPOLUX_MAX_MEMORY");
   output_option(common.stats_file, "write seconds, counts and memory as JSON; -: standard output", "--stats");
   output_option(common.dep_file, "write a make rule: outputs depend on inputs", "--depfile");
   leave_out_of_history(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
