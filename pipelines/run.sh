@@ -46,7 +46,8 @@ set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channel
   --reference-samples "$REFERENCE_SAMPLES"
 for pair in update:UPDATE refine:REFINE photons:PHOTONS pixel-error:ERROR halve-above:THRESHOLD \
   light-units:LIGHT_UNITS environment:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
-  volume:VOLUME exposure:EXPOSURE; do
+  volume:VOLUME exposure:EXPOSURE f-stop:FSTOP focus:FOCUS sensor-width:SENSOR_WIDTH \
+  shutter:SHUTTER shutter-open:SHUTTER_OPEN; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
 done

@@ -18,7 +18,9 @@ shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment "$
 export TEMPOLUX_SAID = state/warnings# warnings of scene-plan: the stages do not repeat them
 scene  = "$$SCENE" $(words) $(shared)
 drawn  = $(scene) $(seed)
-seen   = $(drawn) --camera "$$CAMERA"
+seen   = $(drawn) --camera "$$CAMERA" $(lens)
+lens   = $${FSTOP:+--f-stop "$$FSTOP"} $${FOCUS:+--focus "$$FOCUS"} $${SENSOR_WIDTH:+--sensor-width "$$SENSOR_WIDTH"} \
+  $${SHUTTER:+--shutter "$$SHUTTER"} $${SHUTTER_OPEN:+--shutter-open "$$SHUTTER_OPEN"}
 # Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
 seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
 # Words about the command; run.sh counts them before. With RUN it may wait in a queue, so made.sh says them when it has ended.

@@ -35,7 +35,7 @@ warp() {   # warp FILE... -- OPTION...
   while [ "$1" != -- ]; do files="$files $1"; shift; done
   shift
   # shellcheck disable=SC2086
-  makes $files -- ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"
+  makes $files -- ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"}
 }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
@@ -119,7 +119,7 @@ frame() {
     instead=$target
     warp "$part.warp.exr" "$part.mask.exr" -- "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" \
       --compression none --stats "${target%.exr}.warp.json"
-    makes "$completed" -- frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" \
+    makes "$completed" -- frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"} --base "$part.warp.exr" \
       --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
     instead=
   fi

@@ -195,7 +195,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
     found[i].pixel = pixel;
     if (!mask_.empty() && !mask_[pixel]) return;
     const auto width = std::size_t(view_.width());
-    const Ray ray = view_.ray(sample_of_pixel(int(pixel % width), int(pixel / width), random));
+    const Ray ray = view_.ray(sample_of_pixel(view_, int(pixel % width), int(pixel / width), random));
     RayCounts rays;
     const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
     found[i].layer = audited(light);

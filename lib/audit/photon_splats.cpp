@@ -1,5 +1,6 @@
 #include "lib/audit/photon_splats.h"
 
+#include <bit>
 #include <cmath>
 
 #include "formats/octahedral.h"
@@ -20,20 +21,29 @@ std::optional<Layer> layer_of(formats::PathKind kind) {
   }
 }
 
+/// The point of the lens through which a photon is looked at: two numbers that follow from the photon's bits, because a
+/// photon has no random numbers of its own.
+Vec2 lens_of(const formats::Photon& photon) {
+  std::uint64_t bits = 0x6c656e73ull;
+  for (const float number : {photon.position[0], photon.position[1], photon.position[2], photon.flux[0]})
+    bits = mix64(bits + std::bit_cast<std::uint32_t>(number));
+  return PathRandom(bits, 0).get2(0, Purpose::lens);
+}
+
 }  // namespace
 
 /// True if a ray from the camera towards `place` first meets a surface about there, and comes from the side of
 /// `normal`. Sets the ray, its hit and the distance [m] of `place` from the camera.
-bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const {
+bool PhotonSplats::sees(Vec3 place, Vec3 normal, Vec2 lens, Hit& hit, Ray& ray, float& distance) const {
   if (view_.orthographic()) {
     const std::optional<std::array<double, 2>> raster = view_.project(place);
     ray = view_.pinhole({float((*raster)[0]), float((*raster)[1])});
     ray.origin = place - ray.direction * float(view_.depth(place));
     distance = float(view_.depth(place));
   } else {
-    const Vec3 way = place - view_.eye();
+    const Vec3 eye = view_.lens_point(lens), way = place - eye;
     distance = length(way);
-    ray = {view_.eye(), way * (1 / distance), 0, INFINITY};
+    ray = {eye, way * (1 / distance), 0, INFINITY};
   }
   if (!(distance > 0) || !(dot(normal, ray.direction) < 0)) return false;
   if (!tracer_.intersect(ray, hit)) return false;
@@ -44,7 +54,8 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   const std::optional<Layer> layer = layer_of(photon.kind);
   if (!layer) return std::nullopt;
   const Vec3 place = shifted(photon.position, shift);
-  const std::optional<std::array<double, 2>> raster = view_.project(place);
+  const Vec2 lens = view_.has_lens() ? lens_of(photon) : Vec2{0.5f, 0.5f};
+  const std::optional<std::array<double, 2>> raster = view_.project(place, lens);
   if (!raster ||
       !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height()))
     return std::nullopt;
@@ -52,7 +63,7 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   Hit hit;
   Ray ray;
   float distance = 0;
-  if (!sees(place, normal, hit, ray, distance)) return std::nullopt;
+  if (!sees(place, normal, lens, hit, ray, distance)) return std::nullopt;
   SurfacePoint point = tracer_.surface_point(hit);
   const Vec3 wo = -ray.direction;
   if (std::abs(dot(point.position - place, normal)) > kOff * distance) return std::nullopt;

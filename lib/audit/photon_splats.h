@@ -24,8 +24,9 @@ struct Splat {
 /// rho (1 - A(wo)) is the surface's reflectance towards the camera below its coat (Bsdf::diffuse_reflectance). The flux
 /// already includes the coat's transmittance for the photon's own direction. n is the triangle's normal, d the distance
 /// from the camera, depth the distance along the view axis, and a the area of a pixel on the plane at depth 1. (A pixel
-/// sees the solid angle a depth^3 / d^3.) For an orthographic camera the divisor is a. V is the transmittance of media
-/// and of the solid that the camera is in if a ray from the camera meets x, else 0.
+/// sees the solid angle a depth^3 / d^3.) With a lens the eye is a point of the lens that is drawn for each photon; the
+/// solid angle of a pixel from there has the same form. For an orthographic camera the divisor is a. V is the
+/// transmittance of media and of the solid that the camera is in if a ray from the camera meets x, else 0.
 ///
 /// The sum over the photons of a map is an unbiased estimate of the layer of their kind, in each pixel and over any set
 /// of pixels, if the map stores all photons of this kind. It needs no density estimate, points or records. Light that
@@ -50,7 +51,7 @@ class PhotonSplats {
   static constexpr float kOff = 1e-4f, kAlong = 1e-2f;
 
  private:
-  bool sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const;
+  bool sees(Vec3 place, Vec3 normal, Vec2 lens, Hit& hit, Ray& ray, float& distance) const;
 
   const Tracer& tracer_;
   const CameraView& view_;

@@ -58,7 +58,7 @@ SpecularHits::SpecularHits(const RenderScene& scene, const CameraView& view, std
     const PixelRandom random(seed, i, 0);
     const double at = double(i) + double(PathRandom(seed ^ 1, i).get1(0, Purpose::pixel));
     const std::size_t pixel = pixels[std::min(pixels.size() - 1, std::size_t(at * pixels_of_path))];
-    follow(scene, view.ray(sample_of_pixel(int(pixel % width), int(pixel / width), random)), random, view.cone(),
+    follow(scene, view.ray(sample_of_pixel(view, int(pixel % width), int(pixel / width), random)), random, view.cone(),
            pixels_of_path, found);
   });
   sort_into_cells();

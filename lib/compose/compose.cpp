@@ -275,7 +275,7 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
       marcher.scattered.clear();
       for (int s = 0; s < options.samples; ++s) {
         const PixelRandom random(options.seed, p, std::uint32_t(s));
-        const Ray ray = options.surfaces_by_depth ? view.middle(x, y) : view.ray(sample_of_pixel(x, y, random));
+        const Ray ray = options.surfaces_by_depth ? view.middle(x, y) : view.ray(sample_of_pixel(view, x, y, random));
         float end = INFINITY;
         if (options.surfaces_by_depth) {
           // Converts distance along the ray to Z, which runs along the view axis.

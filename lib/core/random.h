@@ -29,7 +29,8 @@ enum class Purpose : std::uint32_t {
   flight,
   medium,
   phase,
-  sun
+  sun,
+  lens
 };
 
 /// Finaliser with full avalanche on 64 bits (Stafford's mix 13, as in SplitMix64).

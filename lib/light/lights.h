@@ -90,6 +90,8 @@ class Lights {
   /// do not change, and a misleading guide costs at most 1 / kUnguidedShare times the variance. emit() does not use the
   /// guide.
   Lights guided(std::shared_ptr<const SkyGuide> guide) const;
+  /// nullptr: none.
+  const std::shared_ptr<const SkyGuide>& guide() const { return guide_; }
 
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }

@@ -78,7 +78,7 @@ Samples samples_of(const RenderScene& scene, const CameraView& view, const Known
     const Where at = where(int(i), view, seed);
     for (std::uint32_t s = 0; s < kSamples; ++s) {
       const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
-      const Ray ray = view.ray(sample_of_pixel(at.x, at.y, random));
+      const Ray ray = view.ray(sample_of_pixel(view, at.x, at.y, random));
       samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, rays, view.cone()));
     }
   });

@@ -42,8 +42,11 @@ constexpr const char* kRecordsReason = "irradcache-build records";
 constexpr const char* kMovingReason = "photon-trace --map dynamic";
 constexpr const char* kSplitReason = "photonmap-split";
 
+/// Pilots look through a pinhole, so that decisions do not depend on the lens.
 CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wish& wish) {
-  return CameraView(frame, source.camera_node, wish.width, wish.height);
+  PlacedCamera camera = frame.camera(source.camera_node);
+  camera.camera.lens_radius_m = camera.camera.f_stop = 0;
+  return CameraView(camera, frame.origin, wish.width, wish.height);
 }
 
 /// At most kMostViews of `frames`, evenly spaced.
@@ -105,11 +108,11 @@ class FramePilot {
   MovingPilot moving() { return pilot_moving({tracer_, lights_}, table_, view_, 0); }
   /// Mean share of a picture of the segment that the picture before does not show.
   double new_share(const PlannedSegment& segment) const {
-    const std::vector<int> pictures = spread(segment.pictures());
+    const std::vector<int> pictures = spread(segment.views());
     std::vector<PlacedCamera> cameras;
     for (const int frame : pictures)
       if (const auto& view = segment.at(frame).view) cameras.push_back(*view);
-    const double steps = double(segment.pictures().size() - 1) / double(std::max<std::size_t>(2, pictures.size()) - 1);
+    const double steps = double(segment.views().size() - 1) / double(std::max<std::size_t>(2, pictures.size()) - 1);
     return tempolux::new_share(tracer_, cameras, wish_.width, wish_.height) / std::max(1.0, steps);
   }
 
@@ -275,7 +278,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
                      "--moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  const double together = std::min(double(d.together), double(segment.pictures().size())),
+  const double together = std::min(double(d.together), double(segment.views().size())),
                static_work = d.records_of(together) / together;
   const MovingChoice choice =
       wish.moving == "auto"
@@ -289,14 +292,15 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
 
 /// Decides whether warping can make pictures between key frames.
 void decide_walk(const PlannedSegment& segment, Decisions& d) {
-  const std::size_t pictures = segment.pictures().size(), states = segment.states().size();
+  const std::size_t pictures = segment.views().size(), states = segment.states().size();
   std::string because;
-  if (pictures < kFewestForKeys) because = words(pictures, "different picture") + ": too few to lie between keys";
+  if (segment.is_blurred()) because = "lens or shutter blur the pictures: warping moves sharp ones only";
+  else if (pictures < kFewestForKeys) because = words(pictures, "different picture") + ": too few to lie between keys";
   else if (pictures == states)
     because = "light transport differs in all " + words(pictures, "picture") + ": keys lend little light to others";
   else
     because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light";
-  d.walk = pictures >= kFewestForKeys && pictures > states;
+  d.walk = !segment.is_blurred() && pictures >= kFewestForKeys && pictures > states;
   d.reasons.push_back({"ibr-warp", because});
 }
 
@@ -338,7 +342,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
   std::set<int> pictures;
   std::vector<int> frames;
   for (const int frame : looked)
-    if (pictures.insert(segment.at(frame).picture).second) frames.push_back(frame);
+    if (pictures.insert(segment.at(frame).viewed).second) frames.push_back(frame);
   return frames;
 }
 
@@ -357,7 +361,7 @@ std::string view_of(const std::vector<int>& frames, const std::string& kinds, co
   for (const int number : spread(frames)) {
     const SceneFrame frame = source.at(number, false);
     const PlacedCamera camera = frame.camera(source.camera_node);
-    if (!cameras.insert(camera_hash(camera)).second) continue;
+    if (!cameras.insert(pinhole_hash(camera)).second) continue;
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     look_around(Tracer(frame, tree), camera, wish.width, wish.height, around);
     looked.push_back(number);
@@ -403,7 +407,7 @@ struct LookedAt {
 /// Decides how many pictures share records.
 void decide_together(const PlannedSegment& segment, const FramePilot& middle, Decisions& d) {
   if (d.records()) d.new_share = middle.new_share(segment);
-  d.together = pictures_together(segment.pictures().size(), d);
+  d.together = pictures_together(segment.views().size(), d);
 }
 
 /// Decides about the light by what pilots found; `segment` supplies the pictures and the movers.
@@ -511,8 +515,9 @@ std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool m
   Hasher hasher;
   for (const PlannedFrame& frame : segment.frames) {
     hasher.add(frame.light);
-    hasher.add(frame.camera);
+    hasher.add(frame.pinhole);
   }
+  hasher.add(double(segment.is_blurred()));
   hasher.add(segment.static_scene);
   for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common}) hasher.add(word);
   hasher.add(double(wish.method == FrameMethod::preview));

@@ -101,6 +101,13 @@ std::string GraphBuilder::cameras(const std::vector<int>& frames) const {
   return hasher.hex();
 }
 
+std::string GraphBuilder::pinholes(const std::vector<int>& frames) const {
+  Hasher hasher;
+  hasher.add(wish.camera);
+  for (const int frame : frames) hasher.add(std::string_view(state(frame).pinhole));
+  return hasher.hex();
+}
+
 std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames, const Command& command) {
   const std::string key =
       key_of(hash_of_texts({stage.name, stage.command, stage.outputs, tool_hash(std::string(stage.tool())),
@@ -165,6 +172,10 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
   if (plan.media && wish.method == FrameMethod::walkthrough)
     throw InputError(
         "METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
+  if (wish.method == FrameMethod::walkthrough && std::ranges::any_of(plan.segments, &PlannedSegment::is_blurred))
+    throw InputError(
+        "METHOD=walkthrough: the camera's lens or shutter blurs pictures, and warping moves sharp ones only; use "
+        "METHOD=frames, or FSTOP=0 SHUTTER=0 for a sharp film");
   if (plan.media && wish.method == FrameMethod::preview)
     throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))

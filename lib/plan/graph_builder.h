@@ -55,6 +55,8 @@ struct GraphBuilder {
   Command at(int frame) const;
   /// Hash of the cameras of these frames.
   std::string cameras(const std::vector<int>& frames) const;
+  /// The same without lens and shutter, for what does not depend on them.
+  std::string pinholes(const std::vector<int>& frames) const;
   /// Adds a file unless it is there already; returns its name. `frames`: the first part of its name.
   std::string add(const StageInfo& stage, const std::string& frames, const Command& command);
   std::string add(const StageInfo& stage, int frame, const Command& command);

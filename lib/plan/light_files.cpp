@@ -95,16 +95,17 @@ std::string record_words(const GraphBuilder& g, int lit) {
 
 /// Pictures of the segment whose cameras share static records with a frame: a block of Decisions::together.
 std::vector<int> together(const GraphBuilder& g, int frame) {
-  const std::vector<int> pictures = g.segment(frame).pictures();
+  const std::vector<int> pictures = g.segment(frame).views();
   const auto size = std::ptrdiff_t(g.decided(frame).together);
-  const auto block = (std::ranges::lower_bound(pictures, g.state(frame).picture) - pictures.begin()) / size;
+  const auto block = (std::ranges::lower_bound(pictures, g.state(frame).viewed) - pictures.begin()) / size;
   return {pictures.begin() + block * size,
           pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
 }
 
 std::string static_records(GraphBuilder& g, int frame) {
   const std::vector<int> pictures = together(g, frame);
-  Command c{"--frames " + joined(pictures) + " --map static", {}, static_light(g, frame).content + g.cameras(pictures)};
+  Command c{
+      "--frames " + joined(pictures) + " --map static", {}, static_light(g, frame).content + g.pinholes(pictures)};
   c.file("--points", static_points(g, frame));
   c.option(record_words(g, frame));
   return g.add(stage_in("stands_cache"), pictures.front(), c);
@@ -118,18 +119,18 @@ int state_before(const GraphBuilder& g, int lit) {
 /// True if records are kept over time. A state of light with several pictures (the camera moves while the light is
 /// constant) has one cache for all of them instead.
 bool over_time(const GraphBuilder& g, int lit) {
-  return g.decided(lit).moving == MovingMethod::time && g.segment(lit).pictures(lit).size() == 1;
+  return g.decided(lit).moving == MovingMethod::time && g.segment(lit).views(lit).size() == 1;
 }
 
 std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
-  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
+  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.pinholes(pictures)};
   add_points(g, lit, c);
   c.option(record_words(g, lit));
   return g.add(stage_in("cache"), pictures.front(), c);
 }
 
 std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
-  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
+  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.pinholes(pictures)};
   c.file("--update", static_records(g, pictures.front()));
   c.file("--points", point_file(g, lit));
   // Records that movers affected in one of the two previous states are gathered again, too.
@@ -148,9 +149,8 @@ std::string record_file(GraphBuilder& g, int frame);
 
 std::string kept_records(GraphBuilder& g, int lit) {
   const PlannedSegment& s = g.segment(lit);  // the .radsamples file stores its borders
-  Command c{"--frame " + std::to_string(lit),
-            {},
-            g.state(lit).light + g.cameras(s.pictures(lit)) + joined({s.first, s.last})};
+  Command c{
+      "--frame " + std::to_string(lit), {}, g.state(lit).light + g.pinholes(s.views(lit)) + joined({s.first, s.last})};
   add_points(g, lit, c);
   const int before = state_before(g, lit);
   if (before < lit && over_time(g, before)) c.file("--previous", beside(record_file(g, before), ".radsamples"));
@@ -159,7 +159,7 @@ std::string kept_records(GraphBuilder& g, int lit) {
 }
 
 std::string record_file(GraphBuilder& g, int frame) {
-  return g.once("records " + std::to_string(g.state(frame).picture), [&] {
+  return g.once("records " + std::to_string(g.state(frame).viewed), [&] {
     const int lit = g.state(frame).lit_frame;
     if (over_time(g, lit)) return kept_records(g, lit);
     std::vector<int> pictures = together(g, frame);

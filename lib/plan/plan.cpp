@@ -19,6 +19,9 @@
 #include "lib/light/lights.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/animate.h"
+#include "lib/scene/camera_properties.h"
+#include "lib/scene/segment_between.h"
+#include "lib/scene/shutter_times.h"
 #include "lib/scene/static_scene.h"
 
 namespace tempolux {
@@ -39,7 +42,39 @@ std::vector<MovingNode> moving_nodes(const Scene& scene, const Segment& segment)
   return moves;
 }
 
-PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node, const MediaHash& media) {
+/// The longest time that the camera's shutter is open, frames.
+double longest_shutter(const CameraExtras& extras) {
+  double longest = 0;
+  for (std::size_t row = 0; row < extras.lists.size(); ++row)
+    if (camera_properties()[row].member == decltype(CameraProperty::member)(&Camera::shutter_frames))
+      for (const double frames : extras.lists[row]) longest = std::max(longest, frames);
+  return longest;
+}
+
+/// Hash of what the camera sees while its shutter is open: the scene's states at five times. "" if all are equal: then
+/// nothing is blurred. A frame at rest and one at which something stops are different pictures, although both show one
+/// state.
+std::string shutter_hash(const SceneFrame& state, const ShutterTimes& times, int camera_node) {
+  if (!(times.length > 0)) return "";
+  constexpr int kStates = 5;
+  const Scene& scene = *state.scene;
+  const Segment segment = segment_between(scene, times.first_step(), times.last_step(), times.options);
+  const SegmentScene stage(scene, segment, times.options);
+  std::vector<std::string> states;
+  for (int i = 0; i < kStates; ++i) {
+    SceneFrame at = stage.at(times.step(double(i) / (kStates - 1)));
+    at.frame = state.frame;
+    states.push_back(hash_of_texts(
+        {at.hashes.moving_geometry, at.hashes.lights, at.hashes.materials, pinhole_hash(at.camera(camera_node))}));
+  }
+  if (std::ranges::all_of(states, [&](const std::string& one) { return one == states.front(); })) return "";
+  Hasher hasher;
+  for (const std::string& one : states) hasher.add(std::string_view(one));
+  return hasher.hex();
+}
+
+PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node, const MediaHash& media,
+                           const TimeOptions& time) {
   PlannedFrame frame;
   frame.frame = number;
   frame.moving_geometry = state.hashes.moving_geometry;
@@ -48,6 +83,9 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   try {
     frame.view = state.camera(camera_node);
     frame.camera = camera_hash(*frame.view);
+    const std::string blur = shutter_hash(state, ShutterTimes(frame.view->camera, state.frame, time), camera_node);
+    if (!blur.empty()) frame.camera = hash_of_texts({frame.camera, blur});
+    frame.pinhole = pinhole_hash(*frame.view);
   } catch (const InputError&) {  // The camera has no direction. The tools report it if this frame is requested.
   }
   if (media) frame.media = media(number);
@@ -56,11 +94,11 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
 
 /// All frames of the segment. If nothing moves, only the first frame is evaluated.
 std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, int camera_node, bool anything_moves,
-                                         const MediaHash& media) {
+                                         const MediaHash& media, const TimeOptions& time) {
   std::vector<PlannedFrame> frames;
   for (int f = stage.segment().first; f <= stage.segment().last; ++f) {
     if (anything_moves || frames.empty()) {
-      frames.push_back(planned_frame(stage.at(f), f, camera_node, media));
+      frames.push_back(planned_frame(stage.at(f), f, camera_node, media, time));
     } else {
       frames.push_back(frames.front());
       frames.back().frame = f;
@@ -73,13 +111,21 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, int camera_n
 /// Sets light, lit_frame and picture of all frames.
 void share_in_segment(PlannedSegment& segment) {
   std::map<std::string, int> first_lit;
-  std::map<std::pair<int, std::string>, int> first_picture;
+  std::map<std::pair<int, std::string>, int> first_picture, first_view;
   for (PlannedFrame& frame : segment.frames) {
     frame.light = hash_of_texts(
         {segment.static_geometry, frame.materials, segment.frozen, frame.moving_geometry, frame.lights, frame.media});
     frame.lit_frame = first_lit.try_emplace(frame.light, frame.frame).first->second;
     frame.picture = first_picture.try_emplace({frame.lit_frame, frame.camera}, frame.frame).first->second;
+    frame.viewed = first_view.try_emplace({frame.lit_frame, frame.pinhole}, frame.frame).first->second;
   }
+}
+
+/// The last frame at which the lists of a camera's lens may change; 0: they do not.
+int last_of_lens(const Node& camera) {
+  if (!camera.camera_extras.changes()) return 0;
+  const auto longest = std::ranges::max_element(camera.camera_extras.lists, {}, &std::vector<double>::size);
+  return camera.camera_extras.first_frame + int(longest->size()) - 1;
 }
 
 std::string static_scene_hash(const SceneFrame& frame) {
@@ -136,7 +182,10 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   planned.static_scene = static_scene_hash(begin);
   planned.frozen = emission_hash(build_emission_table(scene, segment, options), segment);
   planned.moves = moving_nodes(scene, segment);
-  planned.frames = planned_frames(stage, camera_node, !planned.moves.empty(), media);
+  const CameraExtras& extras = scene.nodes.at(std::size_t(camera_node)).camera_extras;
+  const bool moves = !planned.moves.empty() || extras.changes() || extras.focus_node >= 0 ||
+                     (longest_shutter(extras) > 0 && !scene.animations.empty());
+  planned.frames = planned_frames(stage, camera_node, moves, media, options);
   share_in_segment(planned);
   planned.materials = material_facts(scene, planned, options);
   return planned;
@@ -196,6 +245,19 @@ std::vector<int> PlannedSegment::pictures(std::optional<int> lit) const {
   return {values.begin(), values.end()};
 }
 
+std::vector<int> PlannedSegment::views(std::optional<int> lit) const {
+  std::set<int> values;
+  for (const PlannedFrame& frame : frames)
+    if (!lit || frame.lit_frame == *lit) values.insert(frame.viewed);
+  return {values.begin(), values.end()};
+}
+
+bool PlannedSegment::is_blurred() const {
+  return std::ranges::any_of(frames, [](const PlannedFrame& frame) {
+    return frame.view && (frame.view->camera.has_lens() || frame.view->camera.shutter_frames > 0);
+  });
+}
+
 const PlannedSegment& Plan::segment_of(int frame) const {
   const auto after = std::ranges::upper_bound(segments, frame, {}, &PlannedSegment::first);
   if (after == segments.begin() || std::prev(after)->last < frame)
@@ -213,8 +275,12 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
   plan.media = bool(media);
+  const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), options);
   plan.last_frame =
-      media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
+      media
+          ? last
+          : std::min(last, std::max(last_change(scene, options) + int(std::ceil(longest_shutter(camera.camera_extras))),
+                                    last_of_lens(camera)));
 
   std::vector<int> outside;
   std::set<int> needed;

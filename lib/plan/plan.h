@@ -28,7 +28,9 @@ struct PlannedFrame {
   int frame = 0;
   int lit_frame = 0;                 ///< first frame of the segment with the same light transport
   int picture = 0;                   ///< first frame of the segment with the same light transport and camera
+  int viewed = 0;                    ///< first frame of the segment with the same light transport and pinhole camera
   std::optional<PlacedCamera> view;  ///< scene space; empty: the camera has no direction
+  std::string pinhole;               ///< pinhole_hash() of the camera
   std::string camera, moving_geometry, lights, materials;
   std::string media;  ///< empty: the scene has no media
   std::string light;  ///< hash of everything that light transport depends on at this frame
@@ -49,6 +51,10 @@ struct PlannedSegment {
   std::vector<int> states() const;
   /// First frame of each different picture, ascending; with `lit` only pictures in that state of light.
   std::vector<int> pictures(std::optional<int> lit = {}) const;
+  /// The same for PlannedFrame::viewed: records and points that serve a picture do not depend on the camera's lens.
+  std::vector<int> views(std::optional<int> lit = {}) const;
+  /// True if the camera's lens or shutter blurs some frame.
+  bool is_blurred() const;
 };
 
 struct Plan {
@@ -60,7 +66,8 @@ struct Plan {
   int last_frame = 0;        ///< last frame of the animation; without animation a very large number
   std::vector<PlannedSegment> segments;  ///< by first frame
   /// The segments that stand for the shot: the segments that hold the animation's first, middle and last frame, each
-  /// once. Decisions of the shot follow from these segments. Empty in scenes with media, whose files need not exist at all frames of the animation.
+  /// once. Decisions of the shot follow from these segments. Empty in scenes with media, whose files need not exist at
+  /// all frames of the animation.
   std::vector<PlannedSegment> shot;
   bool media = false;  ///< true if the scene has media
   std::vector<std::string> warnings;

@@ -16,6 +16,7 @@ struct PlanContext {
   std::string scene;                 ///< the scene's file, an absolute name
   std::vector<std::string> options;  ///< of all stages that read the scene
   std::string camera;                ///< name of the camera, or auto
+  std::vector<std::string> lens;     ///< options of the camera's lens, of all stages that read the camera
   StageCosts costs;                  ///< of one command of each stage
   std::string history;
 };

@@ -38,11 +38,11 @@ class AdaptiveFrame {
   AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame)
       : view_(view),
         options_(options),
-        camera_{scene, view, options.known, options.seed},
+        camera_{scene, view, options.known, options.seed, options.shutter},
         frame_(frame),
         noise_(view, options),
         check_(view, options.seed, options.mask),
-        camera_again_{scene, view, options.known, check_.seed()},
+        camera_again_{scene, view, options.known, check_.seed(), options.shutter},
         again_rays_(check_.size()),
         counts_(frame.mean.pixels.size(), noise_.first()),
         parts_(frame.mean.pixels.size()),

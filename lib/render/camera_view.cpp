@@ -1,6 +1,22 @@
 #include "lib/render/camera_view.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/sampling.h"
+
 namespace tempolux {
+namespace {
+
+/// Radius [m] of an open lens. half: half of the picture's longer side, at distance 1.
+double radius_of(const Camera& camera, double half) {
+  if (camera.lens_radius_m > 0) return camera.lens_radius_m;
+  const double sensor = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : kSensorWidth_mm;
+  const double focal_mm = camera.lens_mm > 0 ? camera.lens_mm : sensor / 2 / half;
+  return focal_mm / 1000 / (2 * camera.f_stop);
+}
+
+}  // namespace
 
 CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height)
     : camera_(camera),
@@ -12,6 +28,37 @@ CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int 
   half_width_ = half_height_ * width / height;
   centre_x_ = 2 * half_height_ * camera.camera.lens_shift[0];
   centre_y_ = 2 * half_height_ * camera.camera.lens_shift[1];
+  if (!camera.camera.has_lens()) return;
+  lens_radius_ = radius_of(camera.camera, std::max(half_width_, half_height_));
+  per_focus_ = camera.camera.focus_m > 0 ? 1 / camera.camera.focus_m : 0;
+}
+
+Vec2 CameraView::on_lens(Vec2 lens) const {
+  const Vec2 on = sample_disc_concentric(lens);
+  return {on.x * float(lens_radius_), on.y * float(lens_radius_)};
+}
+
+Vec3 CameraView::lens_point(Vec2 lens) const {
+  if (!has_lens()) return eye();
+  const Vec2 on = on_lens(lens);
+  return Vec3(camera_.scene_from_camera.point({double(on.x), double(on.y), 0}));
+}
+
+/// From the point l of the lens to the point focus (p, -1) of the plane of focus, where p is the raster position in the
+/// picture at distance 1: the direction is (p - l / focus, -1), also for an infinite focus.
+Ray CameraView::through_lens(const CameraSample& sample) const {
+  const double px = centre_x_ + (2.0 * double(sample.raster.x) / width_ - 1) * half_width_;
+  const double py = centre_y_ + (1 - 2.0 * double(sample.raster.y) / height_) * half_height_;
+  const Vec2 on = on_lens(sample.lens);
+  const double lx = double(on.x), ly = double(on.y);
+  const Affine& from = camera_.scene_from_camera;
+  return {Vec3(from.point({lx, ly, 0})),
+          Vec3(normalize(from.direction({px - lx * per_focus_, py - ly * per_focus_, -1}))), 0, INFINITY};
+}
+
+double CameraView::blur(double depth) const {
+  if (!has_lens() || !(depth > 0)) return 0;
+  return 2 * lens_radius_ * std::abs(per_focus_ - 1 / depth) / (2 * half_height_ / height_);
 }
 
 Ray CameraView::pinhole(Vec2 raster) const {
@@ -24,12 +71,21 @@ Ray CameraView::pinhole(Vec2 raster) const {
 
 std::optional<std::array<double, 2>> CameraView::project(Vec3 point) const {
   const Vec3d p = camera_from_scene_.point(Vec3d(point));
-  double x = p.x, y = p.y;
-  if (!orthographic()) {
-    if (!(p.z < 0)) return std::nullopt;
-    x /= -p.z;
-    y /= -p.z;
-  }
+  if (orthographic()) return raster_of(p.x, p.y);
+  if (!(p.z < 0)) return std::nullopt;
+  return raster_of(p.x / -p.z, p.y / -p.z);
+}
+
+std::optional<std::array<double, 2>> CameraView::project(Vec3 point, Vec2 lens) const {
+  if (!has_lens()) return project(point);
+  const Vec3d p = camera_from_scene_.point(Vec3d(point));
+  if (!(p.z < 0)) return std::nullopt;
+  const Vec2 on = on_lens(lens);
+  const double lx = double(on.x), ly = double(on.y);
+  return raster_of((p.x - lx) / -p.z + lx * per_focus_, (p.y - ly) / -p.z + ly * per_focus_);
+}
+
+std::array<double, 2> CameraView::raster_of(double x, double y) const {
   return std::array{((x - centre_x_) / half_width_ + 1) * width_ / 2,
                     (1 - (y - centre_y_) / half_height_) * height_ / 2};
 }

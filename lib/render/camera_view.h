@@ -36,9 +36,14 @@ class CameraView {
   int height() const { return height_; }
   const PlacedCamera& camera() const { return camera_; }
 
-  /// The ray of a sample in scene space, with a unit direction. Perspective rays start at the eye, orthographic rays on
-  /// the plane through the eye. The camera is a pinhole with an instant shutter: lens and shutter have no effect.
-  Ray ray(const CameraSample& sample) const { return pinhole(sample.raster); }
+  /// The ray of a sample in scene space, with a unit direction. Perspective rays start at the sample's point of the
+  /// lens, at the eye of a pinhole, orthographic rays on the plane through the eye. The
+  /// view is that of one moment (Shutter).
+  ///
+  /// Thin lens: all rays of a raster position meet in one point of the plane of focus, on the pinhole ray [Cook,
+  /// Porter, Carpenter, Distributed Ray Tracing, 1984]. The circle of confusion of a point at depth z has the diameter
+  /// 2 lens_radius() |z - focus| / (z focus) in the picture at distance 1.
+  Ray ray(const CameraSample& sample) const { return has_lens() ? through_lens(sample) : pinhole(sample.raster); }
   /// The ray through the lens' centre and a raster position, for what has one ray by definition: data channels,
   /// reprojection, splats.
   Ray pinhole(Vec2 raster) const;
@@ -47,6 +52,9 @@ class CameraView {
   /// Raster position of a scene-space point, which may lie outside the picture. Empty if a perspective camera does not
   /// have the point in front; an orthographic camera projects every point.
   std::optional<std::array<double, 2>> project(Vec3 point) const;
+  /// Raster position at which the point is seen through a point of the lens (CameraSample::lens); as project() without
+  /// lens.
+  std::optional<std::array<double, 2>> project(Vec3 point, Vec2 lens) const;
   /// Distance [m] of a scene-space point along the view axis; negative behind the camera. The channel Z.
   double depth(Vec3 point) const;
 
@@ -57,6 +65,14 @@ class CameraView {
   }
 
   bool orthographic() const { return camera_.camera.kind == Camera::Kind::orthographic; }
+  /// True if rays start all over a lens: the picture of things off the plane of focus is blurred.
+  bool has_lens() const { return lens_radius_ > 0; }
+  /// m; 0: a pinhole. lens / (2 f-stop), where the camera has no radius of its own.
+  double lens_radius() const { return lens_radius_; }
+  /// A point of the lens in scene space.
+  Vec3 lens_point(Vec2 lens) const;
+  /// Diameter [pixels] of the circle of confusion of a point at this depth [m]; 0 without lens.
+  double blur(double depth) const;
   /// Position of the camera in scene space.
   Vec3 eye() const { return Vec3(camera_.scene_from_camera.translation); }
 
@@ -69,6 +85,11 @@ class CameraView {
   std::array<double, 16> world_to_ndc() const;
 
  private:
+  Ray through_lens(const CameraSample& sample) const;
+  Vec2 on_lens(Vec2 lens) const;
+  /// x, y: in the picture at distance 1 (perspective), or in m (orthographic).
+  std::array<double, 2> raster_of(double x, double y) const;
+
   PlacedCamera camera_;
   Affine camera_from_scene_;
   Vec3d origin_;
@@ -76,14 +97,18 @@ class CameraView {
   // Of the picture: at distance 1 (perspective), or in m (orthographic).
   double half_width_, half_height_;
   double centre_x_, centre_y_;  ///< of the picture, from the view axis: to the right, up
+  double lens_radius_ = 0;      ///< m
+  double per_focus_ = 0;        ///< 1/m: 1 / distance of the plane of focus; 0: infinitely far, or not known
 };
 
-/// A sample of pixel (x, y). Its place in the pixel is the number of Purpose::pixel of `random` (PathRandom or
-/// PixelRandom).
+/// A sample of pixel (x, y). Its places in the pixel and on the lens are the numbers of Purpose::pixel and
+/// Purpose::lens of `random` (PathRandom or PixelRandom).
 template <class Random>
-CameraSample sample_of_pixel(int x, int y, const Random& random) {
+CameraSample sample_of_pixel(const CameraView& view, int x, int y, const Random& random) {
   const Vec2 within = random.get2(0, Purpose::pixel);
-  return {.raster = {float(x) + within.x, float(y) + within.y}};
+  CameraSample sample{.raster = {float(x) + within.x, float(y) + within.y}};
+  if (view.has_lens()) sample.lens = random.get2(0, Purpose::lens);
+  return sample;
 }
 
 /// Rays of a camera and what they meet first.

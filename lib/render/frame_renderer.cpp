@@ -27,10 +27,10 @@ void take_samples(const CameraSampler& camera, std::span<const std::uint8_t> mas
 
 /// Takes all samples at once, and renders some pixels a second time to measure noise.
 void render_fixed(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
-  take_samples({scene, view, options.known, options.seed}, options.mask, options.samples, frame.mean, frame.rays,
-               options.progress);
+  take_samples({scene, view, options.known, options.seed, options.shutter}, options.mask, options.samples, frame.mean,
+               frame.rays, options.progress);
   NoiseCheck check(view, options.seed, options.mask);
-  const CameraSampler again{scene, view, options.known, check.seed()};
+  const CameraSampler again{scene, view, options.known, check.seed(), options.shutter};
   const PartCounts all{options.samples, options.samples, options.samples};
   for_each_pixel(view, options.mask, frame.noise_rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     if (const std::uint32_t slot = check.slot(x, y); slot != kNone)
@@ -81,7 +81,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   if (options.halves) {
     for (std::size_t h = 0; h < 2; ++h) {
       frame.half[h] = empty_layers(scene, view, options);
-      take_samples({scene, view, options.known, options.seed ^ kSeedsOfHalves[h]}, options.mask,
+      take_samples({scene, view, options.known, options.seed ^ kSeedsOfHalves[h], options.shutter}, options.mask,
                    std::max(1, options.samples / 2), frame.half[h], frame.rays,
                    options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
     }

@@ -13,6 +13,8 @@
 
 namespace tempolux {
 
+class Shutter;
+
 struct FrameOptions {
   std::uint64_t seed = 0;
   int samples = 16;  ///< per pixel; with halves an even number, half of them in each
@@ -29,6 +31,7 @@ struct FrameOptions {
   /// (lib/render/spread_outliers.h). In a masked frame only pixels of the mask receive light.
   bool spread_outliers = false;
   bool sample_halves = false;         ///< keep LayerImage::sample_halves
+  const Shutter* shutter = nullptr;   ///< motion blur; null: all samples see one moment
   const KnownLight* known = nullptr;  ///< light at which camera paths may end; or null
   std::vector<std::uint8_t> mask;     ///< by pixel, 0: not rendered; empty: all pixels are rendered
   /// By pixel, 1: at an edge between surfaces, 0: inside one. Only for frames that lib/filter will filter: pixels at

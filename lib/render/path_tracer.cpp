@@ -4,6 +4,7 @@
 #include "lib/material/inside.h"
 #include "lib/photon/photon_path.h"
 #include "lib/render/known_light.h"
+#include "lib/render/stored_places.h"
 #include "lib/transport/light_kinds.h"
 #include "lib/scene/texture_lookup.h"
 #include "lib/transport/emission.h"
@@ -62,6 +63,31 @@ struct Vertex {
     times_diffuse = 1 / probability;
     times_specular = 1 / (1 - probability);
   }
+};
+
+/// A surface in the scene that stored light belongs to, with its normals on the lit side: the surface itself, or
+/// where it lies at another moment.
+class StoredAt {
+ public:
+  StoredAt(const RenderScene& scene, const ShadingPoint& x)
+      : surface(&x.surface), geometric(x.normal_geometric), shading(x.normal) {
+    if (!scene.stored) [[likely]]
+      return;
+    moved_ = scene.stored->of(x.surface, x.normal_geometric, x.normal);
+    surface = &moved_->surface, geometric = moved_->geometric, shading = moved_->shading;
+  }
+  StoredAt(const StoredAt&) = delete;
+  const SurfacePoint* surface;
+  Vec3 geometric, shading;
+  /// The surface's shading normal without a normal map, on the lit side.
+  Vec3 smooth(Vec3 here, const ShadingPoint& x) const {
+    if (!moved_) [[likely]]
+      return x.facing(here);
+    return dot(moved_->surface.normal, geometric) < 0 ? -moved_->surface.normal : moved_->surface.normal;
+  }
+
+ private:
+  std::optional<StoredPlaces::Place> moved_;
 };
 
 class EyeTracer {
@@ -258,7 +284,8 @@ void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, cons
                                   Layers& result) const {
   const ShadingPoint& x = at.x;
   GatherCounts rays;
-  BrightPoints::Receiver place{x.surface, x.normal, x.bsdf.has_specular() ? &x.bsdf : nullptr};
+  const StoredAt stored(scene_, x);
+  BrightPoints::Receiver place{*stored.surface, stored.shading, x.bsdf.has_specular() ? &x.bsdf : nullptr};
   place.choice = random.get1(state.bounce, Purpose::light_choice);
   const PathRandom within(random.hashed().bits(state.bounce, Purpose::gather), state.bounce);
   const Rgb irradiance(known_->lamp_spots->arriving(place, 1, within, rays).irradiance);
@@ -342,9 +369,10 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   const ShadingPoint& x = at.x;
   const EyePath& path = state.path;
   Layers& result = *state.result;
+  const StoredAt stored_at(scene_, x);
   const float u = state.random.get1(state.bounce, Purpose::gather);
   if (state.known.has(LightKind::bright) && !state.specular)
-    at.remaining_share = known.remaining_share(x.surface, x.normal_geometric, state.distance, u);
+    at.remaining_share = known.remaining_share(*stored_at.surface, stored_at.geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
   // If the camera sees this surface directly, stored light belongs to layer indirect; if it sees the surface by an
@@ -354,7 +382,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   // that has not sampled bright points, so its path continues.
   if (state.matte || (state.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =
-            known.point_light(x.surface, x.normal_geometric, state.distance, u)) {
+            known.point_light(*stored_at.surface, stored_at.geometric, state.distance, u)) {
       ++counts_.points_read;
       result[layer] += reflected * stored->irradiance;
       at.known = {LightKind::indirect, LightKind::caustic, LightKind::lamps};
@@ -368,15 +396,16 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     const PathRandom random(state.random.hashed().bits(state.bounce, Purpose::gather), state.bounce);
     const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
     result[layer] +=
-        reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
+        reflected *
+        Rgb(known.bright->arriving({*stored_at.surface, stored_at.shading, coat}, samples, random, rays).irradiance);
     counts_.shadow += rays.shadow_rays;
     at.known.add(LightKind::bright);
   };
   if (known.has_caustic()) {
     at.known.add(LightKind::caustic);
     const Layer caustic = path.after(true).after(false).layer();
-    const FootprintLight light =
-        known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+    const FootprintLight light = known.caustic(
+        stored_at.surface->position, {stored_at.geometric, stored_at.smooth(smooth, x), stored_at.shading, &x.bsdf});
     result[caustic] += reflected * light.irradiance;
     if (caustic == Layer::caustic) parts_.stored_noise.caustic += reflected * light.noise;
   }
@@ -385,7 +414,8 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     return;
   }
   Rgb noise(0.0f);
-  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, &noise)) {
+  if (const std::optional<Rgb> indirect =
+          known.indirect(*stored_at.surface, stored_at.geometric, stored_at.shading, &noise)) {
     ++counts_.lookups;
     at.known.add(LightKind::indirect);
     if (!known.lamp_spots) at.known.add(LightKind::lamps);

@@ -182,6 +182,7 @@ struct PathEffort {
 inline PathEffort effort_of(std::uint32_t sample) { return {1, 1, sample, sample}; }
 
 class KnownLight;
+class StoredPlaces;
 
 /// The scene for a renderer. Both references must outlive this object.
 struct RenderScene {
@@ -191,6 +192,8 @@ struct RenderScene {
   /// between them is half of the noise.
   bool suns_apart = false;
   Inside camera_inside{};  ///< the absorbing solid in which camera paths start
+  /// At a moment of a shutter: where its hits lie in the scene of the stored light; null: where they are.
+  const StoredPlaces* stored = nullptr;
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 

@@ -9,6 +9,7 @@
 #include "lib/core/parallel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/photon_light.h"
+#include "lib/render/shutter.h"
 
 namespace tempolux {
 
@@ -128,6 +129,7 @@ struct CameraSampler {
   const CameraView& view;
   const KnownLight* known;  ///< light at which camera paths may end; or null
   std::uint64_t seed;
+  const Shutter* shutter = nullptr;  ///< of motion blur; null: all samples see one moment
 };
 
 /// A pixel and the samples that one pass takes of it: `count` samples, which continue the pixel's Sobol sequences after
@@ -147,14 +149,24 @@ struct PixelPass {
 template <class Add>
 void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves, RayCounts& counts,
                      const Add& add) {
-  const auto& [scene, view, known, seed] = camera;
+  const KnownLight* const known = camera.known;
+  const std::uint64_t seed = camera.seed;
   const PixelRandom of_pixel(seed, pass.pixel, 0);
   const Dealt dealt(seed, pass.pixel, pass.first, pass.count);
   CausticMemory caustics;
   for (int i = 0; i < pass.count.own; ++i) {
     const PixelRandom random = of_pixel.of_sample(std::uint32_t(pass.first.own + i));
     const PathEffort effort = dealt(i);
-    const Ray ray = view.ray(sample_of_pixel(pass.x, pass.y, random));
+    const RenderScene* now = &camera.scene;
+    const CameraView* through = &camera.view;
+    if (camera.shutter) [[unlikely]] {
+      // Bounce 1 of the camera's purposes is free: the time gets a sequence of its own.
+      const Moment& moment = camera.shutter->at(random.get1(1, Purpose::lens));
+      now = &moment.scene(), through = &moment.view();
+    }
+    const RenderScene& scene = *now;
+    const CameraView& view = *through;
+    const Ray ray = view.ray(sample_of_pixel(view, pass.x, pass.y, random));
     Hit hit;
     scene.tracer.intersect(ray, hit);
     caustics.use_half(pass.half(i));

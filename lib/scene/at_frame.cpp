@@ -119,8 +119,14 @@ PlacedCamera SceneFrame::camera(int camera_node) const {
   if (camera_node < 0 || n >= scene->nodes.size() || scene->nodes[n].camera < 0)
     throw std::invalid_argument("node " + std::to_string(camera_node) + " has no camera");
   Camera camera = cameras[std::size_t(scene->nodes[n].camera)];
-  scene->nodes[n].camera_extras.apply(frame, camera);
-  return place_camera(*scene, camera, n, origin, world_from_node[n]);
+  const CameraExtras& extras = scene->nodes[n].camera_extras;
+  extras.apply(frame, camera);
+  PlacedCamera placed = place_camera(*scene, camera, n, origin, world_from_node[n]);
+  if (extras.focus_node >= 0) {
+    const Vec3d target = world_from_node[std::size_t(extras.focus_node)].translation - origin;
+    placed.camera.focus_m = std::abs(inverse(placed.scene_from_camera).point(target).z);  // as Blender's focus object
+  }
+  return placed;
 }
 
 }  // namespace tempolux

@@ -170,6 +170,8 @@ struct SceneFrame {
 formats::Identity identity_of(const SceneFrame& frame);
 /// Hash of one placed camera; SceneHashes::camera covers all cameras of the scene.
 std::string camera_hash(const PlacedCamera& placed);
+/// The same without lens and shutter: what points, records and decisions depend on.
+std::string pinhole_hash(const PlacedCamera& placed);
 
 /// A scene over one segment. Static objects are placed and hashed once and shared by all frames.
 ///

@@ -1,7 +1,6 @@
 #include "lib/scene/camera_extras.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "lib/core/formatted.h"
 #include "lib/core/json.h"
@@ -65,19 +64,32 @@ CameraExtras read_camera_extras(const std::string& extras, const std::string& pl
 }
 
 void CameraExtras::apply(int frame, Camera& camera) const {
-  std::optional<double> lens_mm, f_stop;
   for (std::size_t row = 0; row < lists.size(); ++row) {
     if (lists[row].empty()) continue;
     const CameraProperty& property = camera_properties()[row];
     const double number = at_frame(lists[row], first_frame, frame);
-    if (property.role == CameraRole::lens) lens_mm = number;
-    else if (property.role == CameraRole::f_stop) f_stop = number;
-    else if (const auto* shutter = std::get_if<Camera::Shutter Camera::*>(&property.member))
+    if (const auto* shutter = std::get_if<Camera::Shutter Camera::*>(&property.member))
       camera.** shutter = Camera::Shutter(int(number));
     else camera.*std::get<double Camera::*>(property.member) = number;
   }
-  if (lens_mm && f_stop && camera.kind == Camera::Kind::perspective)
-    camera.lens_radius_m = *f_stop > 0 ? *lens_mm / 1000 / (2 * *f_stop) : 0;
+}
+
+bool CameraExtras::changes() const {
+  return std::ranges::any_of(
+      lists, [](const auto& list) { return std::ranges::any_of(list, [&](double n) { return n != list.front(); }); });
+}
+
+void CameraExtras::set(double Camera::*member, double number) {
+  lists.resize(camera_properties().size());
+  for (std::size_t row = 0; row < lists.size(); ++row)
+    if (const auto* own = std::get_if<double Camera::*>(&camera_properties()[row].member); own && *own == member)
+      lists[row] = {number};
+}
+
+void set_shutter_position(CameraExtras& extras, Camera::Shutter position) {
+  extras.lists.resize(camera_properties().size());
+  for (std::size_t row = 0; row < extras.lists.size(); ++row)
+    if (camera_properties()[row].role == CameraRole::position) extras.lists[row] = {double(position)};
 }
 
 }  // namespace tempolux

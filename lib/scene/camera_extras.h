@@ -14,4 +14,7 @@ namespace tempolux {
 CameraExtras read_camera_extras(const std::string& extras, const std::string& place,
                                 std::vector<std::string>& warnings);
 
+/// Replaces where the frame's time lies in the time that the shutter is open.
+void set_shutter_position(CameraExtras& extras, Camera::Shutter position);
+
 }  // namespace tempolux

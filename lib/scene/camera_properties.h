@@ -19,8 +19,7 @@ enum class CameraRole : std::uint8_t {
   orthographic,  ///< counts in orthographic cameras only
   shift,         ///< two numbers, which count where one of them is not 0
   value,         ///< the member is the number
-  lens,          ///< the lens' focal length, mm: the member is this length / (2 f_stop)
-  f_stop,        ///< the second number of `lens`
+  lens,          ///< the member is the number; counts where the lens is open
   position,      ///< a word: center, start or end
 };
 

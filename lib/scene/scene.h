@@ -142,12 +142,21 @@ struct Camera {
   double ymag_m = 1;      ///< half height of the view, orthographic
   /// Where the picture's centre lies off the view axis, in heights of the picture: x to the right, y up.
   std::array<double, 2> lens_shift{};
-  // From the node's extras; no stage renders them.
-  double lens_radius_m = 0;   ///< 0: a pinhole
-  double focus_m = 0;         ///< distance of what is sharp, along the view axis; 0: not known
-  double shutter_frames = 0;  ///< time the shutter is open, in frames; 0: an instant
+  // From the node's extras or the options.
+  double lens_radius_m = 0;    ///< of the opening; above 0 it counts, and f_stop does not
+  double f_stop = 0;           ///< focal length / diameter of the opening; 0: a pinhole
+  double lens_mm = 0;          ///< focal length; 0: follows from sensor and angle of view
+  double sensor_width_mm = 0;  ///< along the longer side of the picture; 0: kSensorWidth_mm
+  double focus_m = 0;          ///< distance of what is sharp, along the view axis; 0: not known; may be infinite
+  double shutter_frames = 0;   ///< time the shutter is open, in frames; 0: an instant
   Shutter shutter = Shutter::centre;
+
+  /// True if the lens is open, so that things off the plane of focus are blurred. An orthographic camera has no lens.
+  bool has_lens() const { return kind == Kind::perspective && (lens_radius_m > 0 || f_stop > 0); }
 };
+
+/// Width of a full-frame sensor, and Blender's default.
+inline constexpr double kSensorWidth_mm = 36;
 
 /// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them).
 struct CameraExtras {
@@ -155,10 +164,15 @@ struct CameraExtras {
   /// One list for each row of the table in camera_properties.h: a single number for all frames, or one number per frame
   /// from `first_frame` on; empty: the file does not have the property.
   std::vector<std::vector<double>> lists;
+  /// Node on which the camera is focused, whatever `lists` say: focus_m is its distance along the view axis. -1: none.
+  int focus_node = -1;
 
   /// Sets lens and shutter of a camera to their values at a frame; frames outside of a list have its first or last one.
-  /// The radius of a perspective camera's lens is lens / (2 f_stop); an orthographic camera has no lens.
   void apply(int frame, Camera& camera) const;
+  /// True if a list has different values.
+  bool changes() const;
+  /// Replaces the list of a member of Camera by one number for all frames.
+  void set(double Camera::*member, double number);
 };
 
 /// Largest inner cone of a spot, as a share of the outer cone. Blender writes inner = outer for a spot without a soft

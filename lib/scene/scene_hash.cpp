@@ -98,9 +98,9 @@ void add_material(Hasher& hasher, const Scene& scene, const Material& material) 
   if (material.textures->normal) hasher.add(material.textures->normal_scale);
 }
 
-/// Adds a member of a camera, unless it has no effect or another row has added it.
+/// Adds a member of a camera, unless it has no effect.
 void add_property(Hasher& hasher, const Camera& camera, const CameraProperty& property) {
-  if (property.role == CameraRole::f_stop) return;
+  if (property.role == CameraRole::lens && !camera.has_lens()) return;
   if (property.role == CameraRole::perspective && camera.kind != Camera::Kind::perspective) return;
   if (property.role == CameraRole::orthographic && camera.kind != Camera::Kind::orthographic) return;
   std::visit(
@@ -192,12 +192,24 @@ formats::Identity identity_of(const SceneFrame& frame) {
   return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
 }
 
-std::string camera_hash(const PlacedCamera& placed) {
+namespace {
+
+/// What the camera shows of a scene that stands still, through a pinhole.
+Hasher pinhole_hasher(const PlacedCamera& placed) {
   Hasher hasher;
-  hasher.add(std::string_view("camera 2"));
+  hasher.add(std::string_view("camera 3"));
   for (const CameraProperty& property : camera_properties())
     if (property.projects()) add_property(hasher, placed.camera, property);
   hasher.add(placed.scene_from_camera);
+  return hasher;
+}
+
+}  // namespace
+
+std::string pinhole_hash(const PlacedCamera& placed) { return pinhole_hasher(placed).hex(); }
+
+std::string camera_hash(const PlacedCamera& placed) {
+  Hasher hasher = pinhole_hasher(placed);
   for (const CameraProperty& property : camera_properties())
     if (!property.projects()) add_property(hasher, placed.camera, property);
   return hasher.hex();

@@ -11,6 +11,7 @@
 #include "lib/scene/deform.h"
 #include "lib/scene/place_surfaces.h"
 #include "lib/scene/material_properties.h"
+#include "lib/scene/segment_between.h"
 
 namespace tempolux {
 namespace {
@@ -244,8 +245,15 @@ int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options
 Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   if (!(options.fps > 0) || options.segment_length < 1)
     throw std::invalid_argument("segment_of: fps and segment length must be above 0");
+  Segment borders;
+  set_borders(scene, frame, options, borders);
+  return segment_between(scene, borders.first, borders.last, options);
+}
+
+Segment segment_between(const Scene& scene, int first_of_all, int last_of_all, const TimeOptions& options) {
   Segment segment;
-  set_borders(scene, frame, options, segment);
+  segment.first = first_of_all;
+  segment.last = last_of_all;
   const Animator animator(scene);
   const std::size_t count = scene.nodes.size();
   segment.node_moves.assign(count, 0);

@@ -76,16 +76,19 @@ std::string Tool::history_line(std::optional<int> frame) const {
   return line + "\n";
 }
 
-std::vector<std::string> Tool::scene_words() const {
+std::vector<std::string> Tool::scene_words() const { return state_->given(state_->of_scene); }
+std::vector<std::string> Tool::lens_words() const { return state_->given(state_->of_lens); }
+
+std::vector<std::string> Tool::State::given(const std::set<const CLI::Option*>& of) const {
   std::vector<std::string> words;
-  for (const CLI::Option* option : std::as_const(state_->app).get_options()) {
-    if (!state_->of_scene.contains(option) || option->count() == 0) continue;
-    const std::string name = option_name(*option);
-    if (option->get_expected_max() == 0) words.push_back(name);
+  for (const CLI::Option* option : app.get_options()) {
+    if (!of.contains(option) || option->count() == 0) continue;
+    const std::string word = option_name(*option);
+    if (option->get_expected_max() == 0) words.push_back(word);
     else
       for (const std::string& value : option->results()) {
-        const bool file = name == "--volume" ? value != "none" : name == "--environment" && !is_color(value);
-        words.push_back(name + "=" + (file ? std::filesystem::absolute(value).string() : value));
+        const bool file = word == "--volume" ? value != "none" : word == "--environment" && !is_color(value);
+        words.push_back(word + "=" + (file ? std::filesystem::absolute(value).string() : value));
       }
   }
   return words;

@@ -177,6 +177,50 @@ void Tool::volume_options() {
       ->check(number_between(-0.9999, 0.9999));
 }
 
+void Tool::camera_options() {
+  CLI::App& app = state_->app;
+  Common& common = state_->common;
+  app.add_option("--camera", common.camera,
+                 "name of the camera; auto: the scene's first camera, or a new one that shows the whole content")
+      ->type_name("NAME")
+      ->capture_default_str();
+  const auto lens = [&](CLI::Option* option) {
+    state_->of_lens.insert(option);
+    return option;
+  };
+  CLI::Option* const f_stop =
+      lens(app.add_option("--f-stop", common.lens.f_stop,
+                          "depth of field: focal length over the diameter of the lens' opening, "
+                          "such as 2.8; 0: none, everything is sharp [as the scene says]"))
+          ->type_name("N")
+          ->check(number_between(0, 1e6));
+  lens(app.add_option("--lens-radius", common.lens.radius_m,
+                      "radius of the lens' opening in place of --f-stop, m; 0: none [as the scene says]"))
+      ->type_name("M")
+      ->check(number_between(0, 1e3))
+      ->excludes(f_stop);
+  lens(app.add_option(
+           "--focus", common.lens.focus,
+           "what is sharp: a distance along the view axis, m, inf, or the name of a node [as the scene says]"))
+      ->type_name("WHAT");
+  lens(app.add_option("--sensor-width", common.lens.sensor_width_mm,
+                      "sensor along the picture's longer side, mm, which with the angle of view gives the focal length "
+                      "[as the scene says, or 36]"))
+      ->type_name("MM")
+      ->check(number_between(0.1, 1e4));
+  lens(
+      app.add_option("--shutter", common.lens.shutter_deg,
+                     "motion blur: time that the shutter is open, degrees of the frame, such as 180 for half of it; 0: "
+                     "none [as the scene says]"))
+      ->type_name("DEG")
+      ->check(number_between(0, 36000));
+  lens(app.add_option("--shutter-open", common.lens.shutter_open,
+                      "where the frame's time lies in it: centre: in the middle, begin: where the shutter opens [as "
+                      "the scene says, or centre]"))
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"centre", "begin"}));
+}
+
 void Tool::common_options(unsigned flags) {
   CLI::App& app = state_->app;
   Common& common = state_->common;
@@ -184,11 +228,7 @@ void Tool::common_options(unsigned flags) {
     parsed_option(app, "--frames,--frame", "frame, or frames such as 0-47, 0-47x2 or 1,5,9", "0",
                   [&common](const std::string& text) { common.frames = parse_frames(text); })
         ->type_name("FRAMES");
-  if (flags & uses_camera)
-    app.add_option("--camera", common.camera,
-                   "name of the camera; auto: the scene's first camera, or a new one that shows the whole content")
-        ->type_name("NAME")
-        ->capture_default_str();
+  if (flags & uses_camera) camera_options();
   if (flags & uses_seed) seed_options(*this, common);
   if (flags & uses_scene) {
     const auto before = std::ptrdiff_t(app.get_options().size());

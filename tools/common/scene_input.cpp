@@ -3,12 +3,20 @@
 #include <algorithm>
 
 #include "formats/error.h"
+#include "lib/scene/camera_extras.h"
 #include "lib/scene/content_camera.h"
 #include "lib/scene/gltf_load.h"
 #include "lib/scene/light_units.h"
 #include "lib/volume/medium.h"
+#include "tools/common/cli.h"
 
 namespace tempolux::tools {
+namespace {
+
+/// Nearest distance of what is sharp, and the widest opening: rays stay finite.
+constexpr double kNearestFocus_m = 1e-6, kLeastFStop = 1e-3;
+
+}  // namespace
 
 SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : tool_(tool) {
   const Common& common = tool.common();
@@ -20,7 +28,10 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   if (needs & light) require_lights(scene_);
   if (needs & a_camera && common.camera == "auto" && !scene_.has_camera())
     scene_.warnings.push_back(path + ": " + add_content_camera(scene_));
-  if (needs & a_camera) scene_.camera_node(common.camera);
+  if (needs & a_camera) {
+    camera_node_ = scene_.camera_node(common.camera);
+    set_lens();
+  }
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
   if (const std::string doubt = doubt_of_light_units(scene_);
       needs & light && common.light_units == "raw" && !doubt.empty())
@@ -61,6 +72,56 @@ void SceneInput::add_environment() {
   if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");
 }
 
+/// Puts what the command line says of the lens in place of what the scene says.
+void SceneInput::set_lens() {
+  const LensOptions& lens = tool_.common().lens;
+  CameraExtras& extras = scene_.nodes[std::size_t(camera_node_)].camera_extras;
+  if (lens.f_stop || lens.radius_m) {
+    extras.set(&Camera::f_stop, lens.f_stop.value_or(0));
+    extras.set(&Camera::lens_radius_m, lens.radius_m.value_or(0));
+  }
+  if (lens.shutter_deg) extras.set(&Camera::shutter_frames, *lens.shutter_deg / 360);
+  if (!lens.shutter_open.empty())
+    set_shutter_position(extras, lens.shutter_open == "begin" ? Camera::Shutter::start : Camera::Shutter::centre);
+  if (lens.sensor_width_mm) {
+    extras.set(&Camera::sensor_width_mm, *lens.sensor_width_mm);
+    extras.set(&Camera::lens_mm, 0);
+  }
+  const Camera& camera = scene_.cameras[std::size_t(scene_.nodes[std::size_t(camera_node_)].camera)];
+  if (camera.kind == Camera::Kind::orthographic && (lens.f_stop.value_or(0) > 0 || lens.radius_m.value_or(0) > 0))
+    throw InputError("--f-stop, --lens-radius: the camera is orthographic and has no lens; leave them out");
+  if (lens.focus.empty()) return;
+  double metres = 0;
+  if (CLI::detail::lexical_cast(lens.focus, metres)) {
+    if (!(metres >= kNearestFocus_m))
+      throw InputError("--focus " + lens.focus + ": must be a distance of at least 1e-6 m, or the name of a node");
+    return extras.set(&Camera::focus_m, metres);
+  }
+  const auto named = std::ranges::find(scene_.nodes, lens.focus, &Node::name);
+  if (named == scene_.nodes.end())
+    throw InputError("--focus " + lens.focus + ": neither a distance in metres nor the name of a node of " +
+                     scene_.path);
+  extras.focus_node = int(named - scene_.nodes.begin());
+}
+
+/// Throws InputError if the camera's lens is open, but it is not known what is sharp.
+void SceneInput::check_lens(const SceneFrame& frame) const {
+  if (camera_node_ < 0) return;
+  const Node& node = scene_.nodes[std::size_t(camera_node_)];
+  Camera camera = scene_.cameras[std::size_t(node.camera)];
+  node.camera_extras.apply(frame.frame, camera);
+  if (!camera.has_lens()) return;
+  if (node.camera_extras.focus_node >= 0) camera.focus_m = frame.camera(camera_node_).camera.focus_m;
+  const std::string place =
+      scene_.path + ": camera \"" + tool_.common().camera + "\" at frame " + std::to_string(frame.frame) + ": ";
+  if (!(camera.focus_m >= kNearestFocus_m))
+    throw InputError(place +
+                     "its lens is open, but no distance is sharp: give --focus METRES or NODE (make: FOCUS), "
+                     "or --f-stop 0 (make: FSTOP) for a sharp picture");
+  if (!(camera.lens_radius_m > 0) && camera.f_stop < kLeastFStop)
+    throw InputError(place + "its f-stop is below 0.001; give --f-stop (make: FSTOP)");
+}
+
 /// Distant light enters through a sphere around all surfaces and media of the frame. So with distant light and media
 /// each frame has its own bounds, whether it is made alone or in a range. With frozen majorants the majorants' box
 /// replaces the media's boxes: photons of all frames of a segment then start from the same sphere.
@@ -97,6 +158,7 @@ SceneFrame SceneInput::at(int frame, bool asked) {
   frame = nearest;
   enter_segment(frame, asked);
   SceneFrame at = segment_->at(frame);
+  check_lens(at);
   if (asked && volumes_->any()) {
     at.media = volumes_->at(frame, at.origin);
     volumes_->look_for(at, geometry_);

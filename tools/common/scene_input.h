@@ -45,6 +45,8 @@ class SceneInput {
 
  private:
   void add_environment();
+  void set_lens();
+  void check_lens(const SceneFrame& frame) const;
   void enter_segment(int frame, bool read_volumes);
 
   Tool& tool_;
@@ -53,6 +55,7 @@ class SceneInput {
   std::optional<VolumeInput> volumes_;
   Box3d geometry_;                ///< of the segment's triangles, without media; world space, m
   std::optional<int> bounds_of_;  ///< frame whose media the segment's bounds enclose; empty: none yet
+  int camera_node_ = -1;          ///< -1: the tool needs no camera
   std::unique_ptr<SegmentScene> segment_;
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;

@@ -51,7 +51,7 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 enum CommonOptions : unsigned {
   uses_scene = 1,       ///< --fps --segment --animation --light-units --environment... --volume... --allow-stale
   uses_seed = 2,        ///< --seed --seed-mode
-  uses_camera = 4,      ///< --camera
+  uses_camera = 4,      ///< --camera --f-stop --lens-radius --focus --sensor-width --shutter --shutter-open
   uses_frames = 8,      ///< --frame N or --frames SPEC, into Common::frames
   uses_majorants = 16,  ///< --majorants; only with uses_scene
 };
@@ -67,12 +67,21 @@ struct VolumeOptions {
   std::string majorants;                      ///< file from scene-plan; "": each frame has its own majorants
 };
 
+/// What the command line says of the camera's lens in place of the scene. Empty: as the scene says.
+struct LensOptions {
+  std::optional<double> f_stop, radius_m, sensor_width_mm;
+  std::string focus;  ///< metres, or the name of a node
+  std::optional<double> shutter_deg;
+  std::string shutter_open;  ///< centre or begin
+};
+
 /// Values of the common options.
 struct Common {
   int threads = 0;  ///< after parsing at least 1
   std::uint64_t seed = 0;
   std::string seed_mode = "fixed";  ///< or "frame": the frame number is mixed into the seed
   std::string camera = "auto";
+  LensOptions lens;
   std::vector<int> frames{0};  ///< at least one
   double fps = 24;
   int segment_length = 24;
@@ -156,6 +165,8 @@ class Tool {
   /// The given options that every tool needs to read this scene in the same way: time, lights, media. Names of files
   /// are absolute.
   std::vector<std::string> scene_words() const;
+  /// The given options of the camera's lens.
+  std::vector<std::string> lens_words() const;
   /// Adds a file that this run depends on, for --depfile (each once, in order). Throws InputError if an output would
   /// replace the file, unless it is `replaceable`.
   void depends_on(const std::string& file, InputRole role = InputRole::file);
@@ -163,6 +174,7 @@ class Tool {
   std::vector<std::string> warnings() const;
 
  private:
+  void camera_options();
   void environment_options();
   void volume_options();
 

@@ -22,6 +22,7 @@ struct Tool::State {
   Stats stats;
   std::set<const CLI::Option*> left_out_of_history;
   std::set<const CLI::Option*> of_scene;  ///< options with which every tool must read the scene
+  std::set<const CLI::Option*> of_lens;   ///< options with which every tool must see through the camera
   std::set<const CLI::Option*> files;  ///< of file_option(): values may be patterns, unlike names of scenes and cameras
 
   std::vector<std::string> dependencies;
@@ -38,6 +39,9 @@ struct Tool::State {
   /// True if the file TEMPOLUX_SAID has this warning: an earlier tool of the run has given it.
   bool was_said(const std::string& message);
   std::optional<std::set<std::string>> said;
+
+  /// The given ones of these options, as words; names of files are absolute.
+  std::vector<std::string> given(const std::set<const CLI::Option*>& of) const;
 
   bool print_manual() const;
   void apply_limits() const;

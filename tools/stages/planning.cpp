@@ -162,7 +162,10 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   const int camera = input_.scene().camera_node(tool.common().camera);
   tool.stats().phase("plan");
   Plan& plan = planned_.plan;
-  planned_.context = {fs::absolute(scene).string(), tool.scene_words(), tool.common().camera,
+  planned_.context = {fs::absolute(scene).string(),
+                      tool.scene_words(),
+                      tool.common().camera,
+                      tool.lens_words(),
                       folder ? folder->costs(wish.width, wish.height) : table_costs(wish.width, wish.height),
                       tool.history_line()};
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),

@@ -1,6 +1,7 @@
 #include "tools/stages/render_frame.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "formats/error.h"
@@ -11,6 +12,7 @@
 #include "lib/material/smooth_material.h"
 #include "lib/audit/audit.h"
 #include "lib/render/data_channels.h"
+#include "lib/render/shutter.h"
 #include "lib/pilot/hidden_light.h"
 #include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
@@ -177,6 +179,32 @@ void add_light_without_paths(Tool& tool, const RenderOptions& options, const Sho
   }
 }
 
+/// A scene at a frame, and the camera that looks at it.
+struct Looking {
+  const RenderScene& scene;
+  const CameraView& view;
+  int camera;  ///< node
+};
+
+/// The moments of the camera's shutter; nullptr if nothing is blurred. Stored light belongs to the frame's time, so it
+/// can be read only where this is the middle of the shutter.
+std::unique_ptr<const Shutter> open_shutter(Tool& tool, SceneInput& input, const RenderOptions& options,
+                                            const Looking& looking) {
+  const Camera& camera = looking.view.camera().camera;
+  if (!(camera.shutter_frames > 0)) return nullptr;
+  tool.stats().phase("shutter", true);
+  std::unique_ptr<const Shutter> shutter =
+      Shutter::of({input.scene(), input.time(), looking.camera, looking.scene, looking.view});
+  if (!shutter) return nullptr;
+  if (!options.traces_paths() && camera.shutter != Camera::Shutter::centre)
+    throw InputError(
+        "--shutter: photons, points and records belong to the frame's time, which must lie in the middle of the "
+        "shutter: give --shutter-open centre, or --shutter 0 for a sharp picture (make: SHUTTER_OPEN, SHUTTER)");
+  tool.stats().count("shutter_moments", double(shutter->moment_count()));
+  tool.stats().set("shutter_motion_px", shutter->motion_px());
+  return shutter;
+}
+
 void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& tree) {
   FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
@@ -200,6 +228,8 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 
+  const std::unique_ptr<const Shutter> shutter = open_shutter(tool, input, options, {scene, view, camera});
+  frame_options.shutter = shutter.get();
   tool.stats().phase("render", true);
   if (!is_reference) frame_options.known = &light.get();
   Image image{options.width, options.height, {}, {}, {}, {}};

@@ -207,8 +207,8 @@ class Cameras:
         lens = item.original.data
         if lens.type == "PANO":
             lost(Damage.CAMERA, item.label, "a panorama becomes a perspective")
-        if lens.dof.use_dof:
-            lost(Damage.CAMERA, item.label, "depth of field is not rendered (f-stop and focus kept in extras)")
+        if lens.dof.use_dof and (lens.dof.aperture_blades or lens.dof.aperture_ratio != 1):
+            lost(Damage.CAMERA, item.label, "the lens' opening becomes a disc")
         camera = {"name": item.original.name, **first.gltf()}
         if any(abs(s) > 1e-9 for s in first.shift):
             camera["extras"] = {"lens_shift": [float(s) for s in first.shift]}

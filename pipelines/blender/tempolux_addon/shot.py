@@ -131,8 +131,6 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
         if render.pixel_aspect_x != render.pixel_aspect_y:
             size = "x".join(map(str, picture_size(render)))
             self.notes.lost(Damage.CAMERA, "the pixel aspect", f"pixels are square: the same picture as {size}")
-        if render.use_motion_blur:
-            self.notes.lost(Damage.CAMERA, "motion blur", "is not rendered (shutter kept in the camera's extras)")
         for image in bpy.data.images:
             path = (
                 bpy.path.abspath(image.filepath, library=image.library)

@@ -174,17 +174,44 @@ TEST(SceneAtFrame, LensAndShutterComeFromTheNodesExtras) {
     scene.nodes[std::size_t(node)].camera_extras.apply(frame, camera);
     return camera;
   };
-  // 50 mm at f/2.5 is an opening 20 mm wide. Before and behind the list its ends hold.
-  EXPECT_DOUBLE_EQ(camera_at(0).lens_radius_m, 0.01);
-  EXPECT_DOUBLE_EQ(camera_at(3).lens_radius_m, 0.01);
-  EXPECT_DOUBLE_EQ(camera_at(4).lens_radius_m, 0.005);
-  EXPECT_DOUBLE_EQ(camera_at(9).lens_radius_m, 0.0025);
+  // Before and behind the list its ends hold.
+  EXPECT_EQ(camera_at(0).f_stop, 2.5);
+  EXPECT_EQ(camera_at(3).f_stop, 2.5);
+  EXPECT_EQ(camera_at(4).f_stop, 5);
+  EXPECT_EQ(camera_at(9).f_stop, 10);
+  EXPECT_EQ(camera_at(4).lens_mm, 50);
   EXPECT_EQ(camera_at(4).focus_m, 4);
   EXPECT_EQ(camera_at(4).shutter_frames, 0.5);
   EXPECT_EQ(camera_at(4).shutter, Camera::Shutter::start);
 
   maker.json["nodes"][node]["extras"] = {{"f_stop", -1}, {"lens_mm", "long"}, {"shutter_position", 2}, {"focus_m", {}}};
   EXPECT_EQ(maker.load().warnings.size(), 3u);  // {} is null: the file does not say
+}
+
+/// What records and decisions depend on knows nothing of the lens; the picture does, once the lens is open.
+TEST(SceneAtFrame, AnEditOfTheLensChangesPicturesOnly) {
+  PlacedCamera sharp, blurred, refocused;
+  blurred.camera.f_stop = refocused.camera.f_stop = 2;
+  sharp.camera.focus_m = blurred.camera.focus_m = 3;
+  EXPECT_EQ(pinhole_hash(sharp), pinhole_hash(blurred));
+  EXPECT_NE(camera_hash(sharp), camera_hash(blurred));
+  EXPECT_NE(camera_hash(refocused), camera_hash(blurred));
+  PlacedCamera other = sharp;
+  other.camera.focus_m = 5;  // of a pinhole
+  EXPECT_EQ(camera_hash(other), camera_hash(sharp));
+}
+
+/// The distance of a node that moves: along the view axis.
+TEST(SceneAtFrame, FocusFollowsANode) {
+  GltfMaker maker;
+  const int target = maker.add_node({{"mesh", maker.add_triangle()}});
+  const int node = maker.add_camera({{"name", "Camera"}});
+  maker.animate(target, "translation", {0, 1}, {3, 0, -4, 3, 0, -28});
+  Scene scene = maker.load();
+  scene.nodes[std::size_t(node)].camera_extras.focus_node = target;
+  const SegmentScene segment(scene, segment_of(scene, 0, {}), {});
+  EXPECT_NEAR(segment.at(0).camera(node).camera.focus_m, 4, 1e-12);
+  EXPECT_NEAR(segment.at(12).camera(node).camera.focus_m, 16, 1e-12);
 }
 
 TEST(SceneAtFrame, BetweenTwoFramesIsBetweenTheirStates) {

@@ -1,0 +1,41 @@
+# Options of lens and shutter at their limits: one line and exit 2, or a picture without NaN (the reader checks). A scene
+# without lens and shutter is the same bytes as with options that turn them off.
+. "$HERE/expect.sh"
+scene=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
+render="$BUILD/bin/frame-render $scene --frame 10 --size 16x9 --integrator path --spp 4 -q -o made.exr"
+whole() {   # whole OPTION...: renders, and the picture is valid
+  expect 0 '' $render "$@"
+  "$BUILD/bin/tempolux-info" --check made.exr > /dev/null || bad "no valid picture: $*"
+}
+expect 2 'no distance is sharp: give --focus' $render --f-stop 2
+for focus in 0 -1 nan; do expect 2 '--focus' $render --f-stop 2 --focus=$focus; done
+expect 2 "neither a distance in metres nor the name of a node" $render --f-stop 2 --focus Nobody
+for number in nan -1 x; do
+  expect 2 '--f-stop' $render --f-stop=$number --focus 2
+  expect 2 '--lens-radius' $render --lens-radius=$number --focus 2
+  expect 2 '--shutter' $render --shutter=$number
+done
+expect 2 'f-stop is below 0.001' $render --f-stop 1e-9 --focus 2
+expect 2 'excludes' $render --f-stop 2 --lens-radius .1
+expect 2 '--shutter-open' $render --shutter 180 --shutter-open middle
+whole --f-stop 1 --focus inf
+whole --f-stop .001 --focus 1e-6
+whole --lens-radius 1000 --focus 1e9
+whole --lens-radius 1e-30 --focus 2
+whole --f-stop 1 --focus MovingBox
+whole --shutter 3600
+whole --shutter 36000 --shutter-open begin
+whole --shutter 1e-9
+whole --shutter 180 --f-stop .1 --focus MovingBox
+digest() { "$BUILD/bin/tempolux-info" --digest made.exr | cut -d' ' -f1; }
+whole; sharp=$(digest)
+whole --f-stop 0 --shutter 0; [ "$(digest)" = "$sharp" ] || bad 'options that turn lens and shutter off change the picture'
+whole --shutter 180 --threads 1; one=$(digest)
+whole --shutter 180 --threads 3; [ "$(digest)" = "$one" ] || bad 'a blurred picture depends on the number of threads'
+[ "$one" != "$sharp" ] || bad 'a shutter changes nothing'
+# Stored light belongs to the frame's time, which must be the middle of the shutter.
+"$BUILD/bin/photon-trace" "$scene" --frame 10 --photons 1k -q -o light.photons || bad 'no photons'
+cached="$BUILD/bin/frame-render $scene --frame 10 --size 16x9 --spp 4 --integrator photons --photons light.photons -q -o made.exr"
+expect 2 'give --shutter-open centre' $cached --shutter 180 --shutter-open begin
+expect 0 '' $cached --shutter 180
+exit $failed
