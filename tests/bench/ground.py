@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Light where most of it lands out of sight: a lit house on a wide ground, and a dark room beside a bright one.
 
-    ground.py --bin BIN --out DIR [--radii 10,200] [--seeds 2] [--qualities draft,final] [--ways auto,gather]
+    ground.py --bin BIN --out DIR [--houses closed,window] [--radii 10,200] [--seeds 2] [--qualities draft,final]
+              [--ways auto,gather] [--lamps 1]
+    ground.py --bin BIN --out DIR --houses rooms --radii 0 --lamps 10,1000,100000     (lamp of the bright room over that of the dark one)
 
 Prints the bias of layer indirect in percent of the layer, with its standard error over pixels, beside path tracing, and
 the CPU seconds of the chain. Needs the scene generator ../shared/scenes/gen/ground_house.py, else says so.
@@ -16,6 +18,24 @@ import sys
 TOP = pathlib.Path(__file__).resolve().parents[2]
 HOUSE = TOP.parent / "shared/scenes/gen/ground_house.py"
 SIZE = "96x54"
+
+
+def two_rooms(path, ratio):
+    """A dark room, lit by a lamp of 1 cd, beside one lit by a lamp of `ratio` cd; a wall of .1 m between them."""
+    sys.path.insert(0, str(HOUSE.parent))
+    import g as scenes
+    file = scenes.G()
+    white = file.mat((.8, .8, .8))
+    slab = lambda centre, half: file.prim(**scenes.box(centre, half), mat=white)
+    parts = [slab((x, 1.25, z), (hx, 1.45, hz)) for x, z, hx, hz in
+             ((-2.05, 0, .05, 1.6), (0, 0, .05, 1.6), (2.05, 0, .05, 1.6), (0, -1.55, 2.1, .05), (0, 1.55, 2.1, .05))]
+    parts += [slab((0, y, 0), (2.1, .1, 1.6)) for y in (-.1, 2.6)]
+    file.node(mesh=file.mesh(*parts))
+    file.node(mesh=file.mesh(file.prim(**scenes.box((-1.2, .3, -.6), (.3, .3, .3)), mat=file.mat((.7, .3, .2)))))
+    file.lnode(file.light(type="point", intensity=1.0), translation=[-1, 2.1, .2])
+    file.lnode(file.light(type="point", intensity=ratio), translation=[1, 2.1, .2])
+    file.cam((-.2, 1.4, 1.3), (-1.4, .9, -.8), 1.1)
+    file.save(str(path))
 
 
 def run(*words, **more):
@@ -74,7 +94,10 @@ def main():
         for radius in options.radii.split(","):
             for lamp in options.lamps.split(","):
                 scene = options.out / f"{house}-{radius}-{lamp}.glb"
-                run(sys.executable, HOUSE, scene, radius, 3, lamp, house)
+                if house == "rooms":
+                    two_rooms(scene, float(lamp))
+                else:
+                    run(sys.executable, HOUSE, scene, radius, 3, lamp, house)
                 right = reference(options.bin, scene, options.out, options.spp)
                 for quality in options.qualities.split(","):
                     for way in options.ways.split(","):
