@@ -11,6 +11,7 @@
 #include "lib/image/exr_io.h"
 #include "lib/material/smooth_material.h"
 #include "lib/audit/audit.h"
+#include "lib/render/blurred_albedo.h"
 #include "lib/render/data_channels.h"
 #include "lib/render/shutter.h"
 #include "lib/pilot/hidden_light.h"
@@ -250,6 +251,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   }
   tool.stats().phase("data channels", true);
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
+  if (view.has_lens() || shutter) blur_albedo(scene, view, shutter.get(), image);
   add_seen_channels(scene, view, options.channels, image);
   add_influence_channels(scene, view, light.get().localised, options.channels, image);
   tool.stats().phase("write");

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "lib/render/blurred_albedo.h"
+#include "lib/render/data_channels.h"
 #include "tests/support/frames.h"
 
 namespace tempolux {
@@ -137,6 +139,34 @@ TEST(Lens, BlurKeepsTheLight) {
   EXPECT_NEAR(light(lens_of(1, 2, 32), blurred), 36, 0.003 * 36);
   // Sums over pixels: blurred edges add 1/12, the sharp lamp's edges, at borders of pixels, take 1/12 away.
   EXPECT_NEAR(blurred - sharp, 8.0 * 8 / 16 + 1.0 / 6, 0.01 * 4);
+}
+
+/// Behind the focus, the border between a dark and a bright wall runs down the middle of the picture. Through a lens
+/// whose discs are 8 pixels wide, a pixel there has half of each albedo, and at the disc's quarter (2 pixels off) the
+/// share of a disc beyond a chord at half its radius, 1/3 - sqrt(3) / (4 pi) = .1955, has the other one. A pinhole
+/// keeps both.
+TEST(Lens, AlbedoIsAMeanOverTheLens) {
+  test::HandMadeScene made;
+  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
+  made.add_quad({0, -9, -4}, {9, -9, -4}, {9, 9, -4}, {0, 9, -4}, test::matte(Rgb(0.8f)));
+  const SceneFrame& frame = made.frame();
+  const test::Lit lit(frame);
+  const CameraView view = lens_of(1, 2, 32);
+  Image image{32, 18, {}, {}, {}, {}};
+  add_data_channels(lit.scene(), view, {"albedo"}, {}, {}, image);
+  const auto row_mean = [&](int x) {  // of both columns beside the place x
+    double sum = 0;
+    for (int y = 0; y < 18; ++y)
+      for (const int column : {x - 1, x})
+        sum += double(image.find("albedo.G")->values[std::size_t(32 * y + column)]) / 36;
+    return sum;
+  };
+  EXPECT_NEAR(row_mean(14), 0.2, 1e-6);
+  blur_albedo(lit.scene(), view, nullptr, image);
+  EXPECT_NEAR(row_mean(16), 0.5, 0.01);
+  // Pixels on both sides of the place average over 2 pixels: the circle's curvature there adds less than .003.
+  EXPECT_NEAR(row_mean(14), 0.2 + 0.6 * (1 / 3.0 - std::sqrt(3.0) / (4 * M_PI)), 0.01);
+  EXPECT_NEAR(row_mean(6), 0.2, 1e-6);
 }
 
 }  // namespace
