@@ -23,15 +23,22 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
-case $NODES,$CORES,$THREADS in *[!0-9,]* | 0* | *,0*) echo "NODES=$NODES CORES=$CORES THREADS=$THREADS: give numbers above 0" >&2; exit 2;; esac
-case $GROUP in '' | frame | segment | stage) ;; *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;; esac
+for name in NODES CORES THREADS; do
+  eval "value=\$$name"
+  case $value in *[!0-9]* | 0*) echo "$name=$value: give a whole number above 0" >&2; exit 2;; esac
+done
+case $GROUP in
+  '' | frame | segment | stage) ;;
+  *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;;
+esac
 case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
   film) film=yes goal=demo;;
   slurm)
-    command -v sbatch > /dev/null || { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
+    command -v sbatch > /dev/null ||
+      { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
     slurm=yes goal=demo
     [ -n "$RUN" ] || RUN='srun -Q -n1 -c{threads} --mem={mem} --time={time}'
     export THREADS="${THREADS:-1}"
@@ -195,7 +202,8 @@ fi
 raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
 [ -z "$raw" ] || (cd "$OUT" && sh "$PIPELINES/follow.sh" read $raw)
-[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
+[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] ||
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
 if [ "$goal" = report ]; then
   echo "look at $OUT/report/index.html"
   # Curves and steadiness need the scripts of the sources.
