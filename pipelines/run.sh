@@ -111,27 +111,30 @@ if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which
 else
   # scene-plan rewrites only what has changed. Statistics are new after each run: they show that RUN has run it.
   ran=
-  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null; then
+  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null && [ -w "$OUT/state" ]; then
     ran=$OUT/state/planned.json
     set -- "$@" --stats "$ran"
   fi
   # A second make in OUT waits with its plan until this one has a copy.
-  if command -v flock > /dev/null && [ -d "$OUT/state" ] && : > "$OUT/state/.planning"; then
+  if command -v flock > /dev/null && [ -w "$OUT/state" ]; then
     exec 7> "$OUT/state/.planning"
     flock 7
-  fi 2> /dev/null
+  fi
   wanted=plan.mk
   # shellcheck disable=SC2086
   made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
   wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
-  plan=state/.plan.mk.tmp.$(uname -n).$$
-  trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
-  export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
-  # Copies of makes that were killed.
-  (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
-  cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
-  exec 7>&-
+  # A finished OUT may lie on a disk that is read only.
+  if [ -w "$OUT/state" ]; then
+    plan=state/.plan.mk.tmp.$(uname -n).$$
+    trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
+    export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
+    # Copies of makes that were killed.
+    (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
+    cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
+    exec 7>&-
+  fi
 fi
 [ "$goal" = plan ] && exit
 case $goal in frames/*)
@@ -166,8 +169,8 @@ jobs() {
 makes_jobs() { exec ${MAKE:-make} -k --no-print-directory -f "$aside/jobs.mk" -C "$OUT" all; }
 case $RUN in *'{'*) export NEEDS="$aside/needs"; (cd "$OUT" && sh "$PIPELINES/jobs.sh" needs) > "$NEEDS";; esac
 # Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
-exec 8> "$OUT/state/.makes"
-alone() { ! command -v flock > /dev/null || flock "$@" 8; }
+[ ! -w "$OUT/state" ] || exec 8> "$OUT/state/.makes"
+alone() { ! command -v flock > /dev/null || [ ! -w "$OUT/state" ] || flock "$@" 8; }
 alone -s
 failed() {
   alone -n -x ||
