@@ -23,7 +23,8 @@ answer 1 -- $RUN "$BIN/tempolux-info" "$a/frames/$first.exr" --json || exit
 exposure=$(echo "$answered" | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$/\1/p')
 text() { printf %s "$1" | sed 's/&/\&amp;/g; s/</\&lt;/g'; }
 picture() {   # picture RUN FOLDER FRAME
-  made "$work/p.png" -- $RUN "$BIN/tempolux-info" --png "$work/p.png" --exposure "$exposure" "$2/frames/$3.exr" || exit 3
+  made "$work/p.png" -- $RUN "$BIN/tempolux-info" --png "$work/p.png" --exposure "$exposure" "$2/frames/$3.exr" ||
+    exit 3
   printf '<img class=%s alt="" src="data:image/png;base64,' "$1"
   base64 -w 0 "$work/p.png"
   echo '">'

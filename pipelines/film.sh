@@ -15,6 +15,7 @@ done
 fps=$(sed -n 's/^ *"fps": *\([0-9.e+]*\),*$/\1/p' "$PLAN_JSON")
 # H.264 needs even sizes: an odd picture gets a black row or column.
 wanted=film.mp4
-made "$work/film.mp4" -- $RUN ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' \
+made "$work/film.mp4" -- \
+  $RUN ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' \
   -pix_fmt yuv420p "$work/film.mp4" || exit
 mv -f "$work/film.mp4" film.mp4 && echo "$OUT/film.mp4: $n frames, $fps a second"

@@ -1,9 +1,10 @@
 #!/bin/sh
 # job.sh -- runs a job, which makes several files (jobs.sh). Run inside OUT.
 #
-#     job.sh run NAME                  on the machine of make: runs the job by RUN, and looks whether its files are there
-#     job.sh inside FILE... -- FILE... on the machine of the job: makes these files, one command after the other; those
-#                                      after -- only if the exposure of the pictures is known there
+#     job.sh run NAME                   on the machine of make: runs the job by RUN, and looks whether its files are
+#                                       there
+#     job.sh inside FILE... -- FILE...  on the machine of the job: makes these files, one command after the other; those
+#                                       after -- only if the exposure of the pictures is known there
 #
 # The environment has what stages.mk needs, and JOBS: a file with the list of jobs. What fails is named on the machine
 # of the job by made.sh; the exit code is that of the first tool that failed, so that a command that has refused its

@@ -19,8 +19,8 @@
 
 # What commands have cost in this OUT, and where nothing has been measured yet, the estimate of the plan.
 needs() {
-  { sed -n 's|^ *{"file": "\([a-z_]*\)/.*"cpu_s": \([^,]*\), "memory": \([0-9]*\)}.*|plan \1 \3 \2|p' "${PLAN_JSON:-plan.json}" |
-      sort -u
+  json=${PLAN_JSON:-plan.json}
+  { sed -n 's|^ *{"file": "\([a-z_]*\)/.*"cpu_s": \([^,]*\), "memory": \([0-9]*\)}.*|plan \1 \3 \2|p' "$json" | sort -u
     sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' "$PLAN"
   } | awk '
     function value(line) { sub(/.*: */, "", line); return line + 0 }
@@ -40,8 +40,8 @@ needs() {
 }
 
 list() {
-  segments=$(sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "${PLAN_JSON:-plan.json}" | paste -d ' ' - - |
-    tr '\n' ' ')
+  segments=$(sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "${PLAN_JSON:-plan.json}" |
+    paste -sd ' ')
   { needs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" -v measured="$MEASURED_ONLY" '
     function there(file,   line) {
       if (!(file in known)) { known[file] = (getline line < file) >= 0; close(file) }
@@ -59,7 +59,8 @@ list() {
     function unit(picture,   i, n, list) {   # a picture, or its segment
       if (group != "segment") return picture
       n = split(segments, list, " ")
-      for (i = 1; i < n; i += 2) if (number(picture) + 0 >= list[i] && number(picture) + 0 <= list[i + 1]) return list[i]
+      for (i = 1; i < n; i += 2)
+        if (number(picture) + 0 >= list[i] && number(picture) + 0 <= list[i + 1]) return list[i]
       return picture
     }
     function folder_of(file) { sub("/.*", "", file); return file }
@@ -87,14 +88,16 @@ list() {
         file = order[i]; key = needed_by[file]
         if (!(key in name)) {
           split(key, of, " ")
-          first[key] = file
           is_light = split(key, of, " ") > 1
           keys[++jobs] = key
           name[key] = (is_light ? "light" : group) "-" (number(file) == "" ? "0" : number(file)) "-" jobs
         }
         job[file] = name[key]
         folder = folder_of(file)
-        if (folder != "shown") { computes[key] = 1; if (bytes[folder] > most[key]) most[key] = bytes[folder]; seconds[key] += cpu[folder] }
+        if (folder == "shown") continue
+        computes[key]
+        seconds[key] += cpu[folder]
+        if (bytes[folder] > most[key]) most[key] = bytes[folder]
       }
       # What other jobs read, and what they wait for.
       for (i = 1; i <= files; ++i) {
@@ -102,8 +105,10 @@ list() {
         for (k = 1; k <= n; ++k) {
           input = list[k]
           if (!(input in job) || job[input] == job[file]) continue
-          if (!((job[file], job[input]) in waits)) { waits[job[file], job[input]]; before[job[file]] = before[job[file]] " " job[input] }
           read[input]
+          if ((job[file], job[input]) in waits) continue
+          waits[job[file], job[input]]
+          before[job[file]] = before[job[file]] " " job[input]
         }
       }
       for (i = 1; i <= files; ++i) {
@@ -115,10 +120,9 @@ list() {
         also[key] = also[key] previews[picture]
         previews[picture] = ""
       }
-      last = 0
       for (j = 1; j <= jobs; ++j) {
         key = keys[j]
-        if (!computes[key]) continue
+        if (!(key in computes)) continue
         tell(name[key], most[key], seconds[key], before[name[key]], makes[key], also[key])
         all = all " " name[key]
         if (most[key] > largest) largest = most[key]
@@ -136,7 +140,7 @@ list() {
 # its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
 forecast() {
   MEASURED_ONLY=yes list | awk -F '\t' -v nodes="$NODES" -v cores="$CORES" -v threads="${THREADS:-1}" '
-    { name[++jobs] = $1; memory[jobs] = $2; takes[jobs] = $3 / threads; number[$1] = jobs; before[jobs] = $4; sum += $3 }
+    { name[++jobs] = $1; number[$1] = jobs; memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3; before[jobs] = $4 }
     END {
       for (j = 1; j <= jobs; ++j) {
         waits[j] = split(before[j], list, " ")
@@ -156,23 +160,25 @@ forecast() {
           delete runs[j]; delete ended[j]; --running
           n = split(after[j], list, " ")
           for (i = 1; i <= n; ++i) --waits[list[i]]
-          if (ends[j] >= now) final = j
         }
       }
-      for (j = 1; j <= jobs; ++j) longest(j)
       chain = ""; end = 0
-      for (j = 1; j <= jobs; ++j) if (path[j] > path[end]) end = j
+      for (j = 1; j <= jobs; ++j) if (longest(j) > path[end]) end = j
       for (j = end; j; j = through[j]) chain = name[j] (chain ? ", " : "") chain
-      printf "%d jobs on %d x %d processors, %d for each job: %.1f s, %.0f %% of the processors busy\n", jobs, nodes, cores,
-        threads, now, (now > 0 ? 100 * sum / (now * nodes * cores) : 100)
+      busy = now > 0 ? 100 * sum / (now * nodes * cores) : 100
+      printf "%d jobs on %d x %d processors, %d for each job: %.1f s, %.0f %% of the processors busy\n", jobs, nodes,
+        cores, threads, now, busy
       printf "not less than %.1f s on any number, the longest chain of jobs: %s\n", path[end], chain
       printf "memory of a job: up to %d MB; of a node: up to %d MB\n", largest, largest * int(cores / threads)
     }
-    function longest(j,   i, n, list) {   # sets path[j]: the seconds from the start to the end of this job at best
+    function longest(j,   i, n, list, earlier) {   # sets path[j]: the seconds from the start to the end of this job at best
       if (j in path) return path[j]
       path[j] = 0
       n = split(before[j], list, " ")
-      for (i = 1; i <= n; ++i) if (longest(number[list[i]]) > path[j]) { path[j] = path[number[list[i]]]; through[j] = number[list[i]] }
+      for (i = 1; i <= n; ++i) {
+        earlier = longest(number[list[i]])
+        if (earlier > path[j]) { path[j] = earlier; through[j] = number[list[i]] }
+      }
       return path[j] += takes[j]
     }'
 }

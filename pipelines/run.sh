@@ -23,15 +23,22 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
-case $NODES,$CORES,$THREADS in *[!0-9,]* | 0* | *,0*) echo "NODES=$NODES CORES=$CORES THREADS=$THREADS: give numbers above 0" >&2; exit 2;; esac
-case $GROUP in '' | frame | segment | stage) ;; *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;; esac
+for name in NODES CORES THREADS; do
+  eval "value=\$$name"
+  case $value in *[!0-9]* | 0*) echo "$name=$value: give a whole number above 0" >&2; exit 2;; esac
+done
+case $GROUP in
+  '' | frame | segment | stage) ;;
+  *) echo "GROUP=$GROUP: is none of frame, segment, stage" >&2; exit 2;;
+esac
 case $RETRIES in *[!0-9]*) echo "RETRIES=$RETRIES: give a whole number" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
   film) film=yes goal=demo;;
   slurm)
-    command -v sbatch > /dev/null || { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
+    command -v sbatch > /dev/null ||
+      { echo 'make slurm: there is no sbatch; run it where jobs are submitted' >&2; exit 2; }
     slurm=yes goal=demo
     [ -n "$RUN" ] || RUN='srun -Q -n1 -c{threads} --mem={mem} --time={time}'
     export THREADS="${THREADS:-1}"
@@ -105,27 +112,30 @@ if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which
 else
   # scene-plan rewrites only what has changed. Statistics are new after each run: they show that RUN has run it.
   ran=
-  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null; then
+  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null && [ -w "$OUT/state" ]; then
     ran=$OUT/state/planned.json
     set -- "$@" --stats "$ran"
   fi
   # A second make in OUT waits with its plan until this one has a copy.
-  if command -v flock > /dev/null && [ -d "$OUT/state" ] && : > "$OUT/state/.planning"; then
+  if command -v flock > /dev/null && [ -w "$OUT/state" ]; then
     exec 7> "$OUT/state/.planning"
     flock 7
-  fi 2> /dev/null
+  fi
   wanted=plan.mk
   # shellcheck disable=SC2086
   made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
   wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
-  plan=state/.plan.mk.tmp.$(uname -n).$$
-  trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
-  export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
-  # Copies of makes that were killed.
-  (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
-  cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
-  exec 7>&-
+  # A finished OUT may lie on a disk that is read only.
+  if [ -w "$OUT/state" ]; then
+    plan=state/.plan.mk.tmp.$(uname -n).$$
+    trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
+    export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
+    # Copies of makes that were killed.
+    (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
+    cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
+    exec 7>&-
+  fi
 fi
 [ "$goal" = plan ] && exit
 case $goal in frames/*)
@@ -160,8 +170,8 @@ jobs() {
 makes_jobs() { exec ${MAKE:-make} -k --no-print-directory -f "$aside/jobs.mk" -C "$OUT" all; }
 case $RUN in *'{'*) export NEEDS="$aside/needs"; (cd "$OUT" && sh "$PIPELINES/jobs.sh" needs) > "$NEEDS";; esac
 # Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
-exec 8> "$OUT/state/.makes"
-alone() { ! command -v flock > /dev/null || flock "$@" 8; }
+[ ! -w "$OUT/state" ] || exec 8> "$OUT/state/.makes"
+alone() { ! command -v flock > /dev/null || [ ! -w "$OUT/state" ] || flock "$@" 8; }
 alone -s
 failed() {
   alone -n -x ||
@@ -196,7 +206,8 @@ fi
 raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
 [ -z "$raw" ] || (cd "$OUT" && sh "$PIPELINES/follow.sh" read $raw)
-[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
+[ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || [ "$goal" != demo ] ||
+  (cd "$OUT" && sh "$PIPELINES/progress.sh" end) || exit
 if [ "$goal" = report ]; then
   echo "look at $OUT/report/index.html"
   # Curves and steadiness need the scripts of the sources.

@@ -109,7 +109,8 @@ watch() {
       [ -z "$made" ] || sh "$PIPELINES/progress.sh" job "$name"
     done < "$work/given"
     [ -s "$work/alive" ] || return 0
-    why=$(awk '$2 == "R" || $2 == "CG" { runs = 1 } $2 == "PD" && $3 !~ /None|Dependency/ { n++; $1 = $2 = ""; why = $0 }
+    why=$(awk '$2 == "R" || $2 == "CG" { runs = 1 }
+      $2 == "PD" && $3 !~ /None|Dependency/ { n++; $1 = $2 = ""; why = $0 }
       END { if (n && !runs) { sub(/^ */, "", why); print n " jobs wait: " why } }' "$work/alive")
     [ -z "$why" ] || [ "$why" = "$told" ] || echo "$why"
     told=$why
@@ -123,7 +124,8 @@ cancel() { cancel_all; stop; }
 submit_all() {
   work=state/slurm-$( (echo "$GROUP"; cat "$PLAN") | cksum | tr ' ' -)
   exec 6> "state/.${work#state/}"
-  ! command -v flock > /dev/null || flock -n 6 || { echo 'another make watches these jobs; this one waits for it'; flock 6; }
+  ! command -v flock > /dev/null || flock -n 6 ||
+    { echo 'another make watches these jobs; this one waits for it'; flock 6; }
   mkdir -p "$work" || exit 3
   cp "$PLAN" "$work/plan.mk" && cp "$PLAN_JSON" "$work/plan.json" || exit 3
   export OUR_ENVIRONMENT="$ENVIRONMENT"   # sbatch sets ENVIRONMENT=BATCH in a job
@@ -146,7 +148,8 @@ submit_all() {
       exit 2
     fi
     round=$((round + 1))
-    cut -f 5 "$work/missing" | sed "s/ .*//; /^demo\$/d; s/\$/: not made; its job is submitted again ($round of ${RETRIES:-2})/" >&2
+    cut -f 5 "$work/missing" | sed 's/ .*//; /^demo$/d' |
+      sed "s/\$/: not made; its job is submitted again ($round of ${RETRIES:-2})/" >&2
     rm -f "$work"/failed.*
   done
   rm -rf "$work"
@@ -155,7 +158,8 @@ submit_all() {
 case $1 in
   submit) submit_all;;
   task)
-    export ENVIRONMENT="$OUR_ENVIRONMENT" RUN=env FAILED="${2%/*}/failed.${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID" PROGRESS='' CLAIMS='' NEEDS=''
+    export ENVIRONMENT="$OUR_ENVIRONMENT" RUN=env PROGRESS='' CLAIMS='' NEEDS=''
+    export FAILED="${2%/*}/failed.${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
     unset MAKEFLAGS MFLAGS MAKELEVEL
     [ -z "$THREADS" ] && TEMPOLUX_THREADS=$SLURM_CPUS_PER_TASK && export TEMPOLUX_THREADS
     exec sh "$PIPELINES/job.sh" run "$(sed -n "${SLURM_ARRAY_TASK_ID}p" "$2")";;

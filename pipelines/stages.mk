@@ -23,7 +23,8 @@ lens   = $${FSTOP:+--f-stop "$$FSTOP"} $${FOCUS:+--focus "$$FOCUS"} $${SENSOR_WI
   $${SHUTTER:+--shutter "$$SHUTTER"} $${SHUTTER_OPEN:+--shutter-open "$$SHUTTER_OPEN"}
 # Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
 seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
-# Words about the command; run.sh counts them before. With RUN it may wait in a queue, so made.sh says them when it has ended.
+# Words about the command; run.sh counts them before. With RUN it may wait in a queue, so made.sh says them when it has
+# ended.
 say    = $(if $V,,$(if $(RUN),:,sh) "$$PIPELINES/progress.sh" say $@ &&)
 # A rule is `$(run) FILES $(tool)TOOL OPTIONS; }`: it runs a tool and looks whether it has made these files; with V=1
 # it shows the command (made.sh). follow.sh may have made the file before make comes to it. exec: what stops make stops

@@ -211,6 +211,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="faults: " + ", ".join(f.__name__ for f in FAULTS))
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))   # the daemons end, too
     rng, failed = random.Random(arguments.seed), 0
     faults = [f for f in FAULTS if not arguments.only or f.__name__ in arguments.only.split(",")]
 
