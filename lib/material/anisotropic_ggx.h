@@ -41,8 +41,8 @@ class AnisotropicGgx {
 
   float alpha_t_, alpha_b_;
   Vec2 grain_{1, 0};
-  int row_[2];           ///< first of the four rows of each width
-  float weight_[2][4];   ///< weights of these rows
+  int row_[2];          ///< first of the four rows of each width
+  float weight_[2][4];  ///< weights of these rows
 };
 
 namespace anisotropic_table {

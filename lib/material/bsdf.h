@@ -20,11 +20,11 @@ namespace tempolux {
 /// exceptions: rough glass also scatters to wi.z < 0, and delta lobes can only be sampled.
 ///
 /// The lobes lie in a stack: those of event S, below them the Lambert lobe of event D. Each receives the light that the
-/// lobes above it do not reflect. The Lambert lobe is coupled as by Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled
-/// Specular-Matte BRDF Model", EG 2001. Below a lobe of albedo A, it is multiplied by
+/// lobes above it do not reflect. The Lambert lobe is coupled as by Kelemen & Szirmay-Kalos, "A Microfacet Based
+/// Coupled Specular-Matte BRDF Model", EG 2001. Below a lobe of albedo A, it is multiplied by
 ///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean),
-/// with A of the largest channel and A_mean its cosine-weighted mean over the hemisphere. So below all lobes of event S,
-/// with c as their product,
+/// with A of the largest channel and A_mean its cosine-weighted mean over the hemisphere. So below all lobes of event
+/// S, with c as their product,
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
 /// The coupling is separable, a factor of wi times a factor of wo. So records, points and photons may keep light that
 /// is weighted by c(wi), and are exact for every wo; a coat or a sheen above the Lambert lobe keeps that exact.
@@ -39,13 +39,14 @@ namespace tempolux {
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic).
 /// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
-/// above these, with F0 = 0.04 clearcoat and F90 = clearcoat; coat.h if the coat has a normal of its own. Between the two
-/// lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider along one direction
-/// (anisotropic_ggx.h).
+/// above these, with F0 = 0.04 clearcoat and F90 = clearcoat; coat.h if the coat has a normal of its own. Between the
+/// two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider along one
+/// direction (anisotropic_ggx.h).
 ///
-/// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included. Paths carry L / n^2 in place
-/// of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the same value as one outside.
-/// sample() also serves photons, which carry watts; photon_trace.h divides their density inside a solid by n^2.
+/// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included.
+/// Paths carry L / n^2 in place of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the
+/// same value as one outside. sample() also serves photons, which carry watts; photon_trace.h divides their density
+/// inside a solid by n^2.
 ///
 /// With that factor a mirror below a coat would return more light than arrives, since its wi is not spread over the
 /// hemisphere. A lobe of event S below others is multiplied by min(P(wi), P(wo)), where P(w) is the product of 1 - A(w)
@@ -61,8 +62,8 @@ class Bsdf {
   /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
   /// which is outside a solid of glass. An unlit material scatters nothing.
   explicit Bsdf(const MaterialValues& material, bool front = true) : Bsdf(material, front, nullptr) {}
-  /// The same, for a material with axes (SurfaceAxes). frame: the local frame, whose z axis is the shading normal on the
-  /// side of wo. carries: what the path carries; Carries::flux if wo leads to the light.
+  /// The same, for a material with axes (SurfaceAxes). frame: the local frame, whose z axis is the shading normal on
+  /// the side of wo. carries: what the path carries; Carries::flux if wo leads to the light.
   Bsdf(const MaterialValues& material, bool front, const Frame& frame, Carries carries = Carries::radiance)
       : Bsdf(material, front, &frame, carries) {}
 

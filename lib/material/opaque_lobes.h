@@ -92,11 +92,7 @@ class BasicGloss {
   Rgb weight(LobeDirection wi, LobeDirection wo, float chance, float pdf) const;
 
   /// Expresses the width's axes in another local frame.
-  void turn(const Frame& from, const Frame& to)
-    requires Width::kDirected
-  {
-    width_.turn(from, to);
-  }
+  void turn(const Frame& from, const Frame& to) requires Width::kDirected { width_.turn(from, to); }
 
  private:
   Rgb f(LobeDirection wi, LobeDirection wo) const;

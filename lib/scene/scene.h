@@ -49,7 +49,7 @@ struct MaterialValues {
   Rgb attenuation_color{1.0f};
   float attenuation_distance = std::numeric_limits<float>::infinity();
   bool double_sided = false;
-  bool unlit = false;  ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
+  bool unlit = false;             ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
   float clearcoat = 0;            ///< KHR_materials_clearcoat: factor of the coat's Fresnel term, [0, 1]
   float clearcoat_roughness = 0;  ///< perceptual, [0, 1]
   Rgb sheen_color{0.0f};          ///< KHR_materials_sheen, [0, 1]
@@ -79,19 +79,19 @@ struct Texture {
 
 /// The textures of a material; each multiplies the property of its name. Vertex colours multiply base colour and alpha.
 struct MaterialTextures {
-  Texture base_color;          ///< sRGB; its A multiplies Material::alpha
-  Texture metallic_roughness;  ///< linear: B metallic, G roughness
-  Texture normal;              ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
-  Texture emission;            ///< sRGB
-  Texture transmission;        ///< linear: R
-  Texture specular;            ///< linear: A
-  Texture specular_color;      ///< sRGB
-  Texture clearcoat;           ///< linear: R
+  Texture base_color;           ///< sRGB; its A multiplies Material::alpha
+  Texture metallic_roughness;   ///< linear: B metallic, G roughness
+  Texture normal;               ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
+  Texture emission;             ///< sRGB
+  Texture transmission;         ///< linear: R
+  Texture specular;             ///< linear: A
+  Texture specular_color;       ///< sRGB
+  Texture clearcoat;            ///< linear: R
   Texture clearcoat_roughness;  ///< linear: G
-  Texture clearcoat_normal;    ///< as normal; without it the coat has the smooth normal
-  Texture sheen_color;         ///< sRGB
-  Texture sheen_roughness;     ///< linear: A
-  Texture anisotropy;          ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
+  Texture clearcoat_normal;     ///< as normal; without it the coat has the smooth normal
+  Texture sheen_color;          ///< sRGB
+  Texture sheen_roughness;      ///< linear: A
+  Texture anisotropy;           ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
   float normal_scale = 1, clearcoat_normal_scale = 1;
   bool grain = false;          ///< true if the material has anisotropy, so that primitives need tangents
   bool vertex_colors = false;  ///< true if some primitives of the material have Primitive::colors
