@@ -78,7 +78,7 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   if (material.values().unlit) return std::nullopt;
   const ShadingPoint x(point, wo, material);
   if (!x.bsdf.has_diffuse()) return std::nullopt;
-  Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * rgb_of(photon.flux);
+  Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local) * kInvPi * rgb_of(photon.flux);
   if (wi && photon.kind == formats::PathKind::caustic)
     radiance *= received_share(*wi, normal, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   const double pixel = double(view_.pixel_size(1)), depth = view_.depth(place);

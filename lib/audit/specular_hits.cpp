@@ -80,7 +80,7 @@ void SpecularHits::follow(const RenderScene& scene, const Ray& ray, const PixelR
       const float radius = kFootprints * widen * cone.width;
       found.push_back(
           {x, chain.ray().origin, x.normal_geometric, smooth,
-           weight * chain.passed() * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * kInvPi / (radius * radius)),
+           weight * chain.passed() * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * kInvPi / (radius * radius)),
            radius});
     }
     if (!x.bsdf.has_specular()) return;

@@ -152,7 +152,7 @@ std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& p
   const PointLookup::Light* light = points_.find(there.position, normal);
   if (!light || !(high_[light->point] > 0)) return std::nullopt;
   const SurfaceMaterial material(tracer_.frame(), there);
-  const Bsdf bsdf(material, dot(there.normal_geometric, place.normal) > 0);
+  const Bsdf bsdf(material, dot(there.normal_geometric, place.normal) > 0, Frame(face_forward(there.normal, normal)));
   if (!bsdf.has_diffuse()) return std::nullopt;
   return Site{there, normal, light->all * high_[light->point], bsdf, light->radius, area, light->point};
 }
@@ -191,8 +191,8 @@ float BrightPoints::share(const Site& site, float distance, bool reads_close) co
 }
 
 Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {
-  const float cosine = site.bsdf.has_specular() ? SeenSide(site.place, wo).wo_local.z : 1;
-  return site.bsdf.diffuse_reflectance(cosine) * site.irradiance * kInvPi;
+  const Vec3 local = site.bsdf.has_specular() ? SeenSide(site.place, wo).wo_local : Vec3{0, 0, 1};
+  return site.bsdf.diffuse_reflectance(local) * site.irradiance * kInvPi;
 }
 
 BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRandom& random,
@@ -228,9 +228,9 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
                                      {random, number, way_shadow});
     if (is_black(passed)) continue;
     const Rgbd seen = Rgbd(radiance(site, -wi) * part) * Rgbd(passed);
-    const double d2 = distance * distance, cosine = here / distance;
+    const double d2 = distance * distance;
     const Rgb arrival = frame     ? at.coat->eval_specular(at.coat->along(wi_local), eye)
-                        : at.coat ? Rgb(at.coat->arrival_weight(float(cosine)))
+                        : at.coat ? Rgb(at.coat->arrival_weight(wi, normal))
                                   : Rgb(1.0f);
     const Rgbd power =
         seen * Rgbd(arrival) * (double(site.area) * double(sites.count) / (chosen.probability * double(samples)));

@@ -83,7 +83,7 @@ void FinalGather::follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot
   const Bsdf bsdf = incoming_.bsdf_at(from, normal);
   if (!(bsdf.has_specular() && bsdf.has_diffuse())) return;
   for (std::size_t i = 0; i < shot.rays.size(); ++i) {
-    const float weight = bsdf.arrival_weight(dot(shot.rays[i].direction, normal));
+    const float weight = bsdf.arrival_weight(shot.rays[i].direction, normal);
     shot.radiance[i] *= weight;
     shot.sources[i].noise *= weight;
   }

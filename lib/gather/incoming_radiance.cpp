@@ -110,7 +110,9 @@ inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) c
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
   if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
     const SurfaceMaterial material(tracer_.frame(), met.hit);
-    met.bsdf = &met.textured.emplace(material, cosine > 0);
+    met.bsdf = material.values().axes.any()
+                   ? &met.textured.emplace(material, cosine > 0, SeenSide(met.hit, wo).frame)
+                   : &met.textured.emplace(material, cosine > 0);
   }
   met.wo = wo;
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
@@ -219,7 +221,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   }
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
-    const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
+    const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local : Vec3{0, 0, 1}) * kInvPi;
     // Most hits are not close whatever the random number is, so the first test needs none.
     const bool near = point && depth == 0 && PointLookup::is_near(*point, met.distance, 1) &&
                       PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather));
@@ -272,7 +274,7 @@ Rgb IncomingRadiance::reflected_specular(const Met& met, const SeenSide& side, c
   if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
   Further after = next.straight
                       ? from.behind_pane(weight, met.leg)
-                      : from.after_specular(weight, sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
+                      : from.after_specular(weight, sampled && !next.delta ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
   event.pass(met.hit, material, dot(met.hit.normal_geometric, met.wo) > 0, after.inside);
   if (source) source->partial = true;
   return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to);
@@ -359,7 +361,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   // estimates a record's variance from the differences of neighbouring cells.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
-  Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
+  Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn));
   if (depth > 0 && !survives(weight, kLargestSurvival, random.get1(1, Purpose::roulette))) return irradiance;
   to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of,
                         point ? kCausticKnown : LightKinds{}, 0, bright_ ? 1.0f : 0.0f});

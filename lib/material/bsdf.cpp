@@ -8,53 +8,10 @@
 namespace tempolux {
 namespace {
 
-/// F0 [1] of a dielectric in glTF: ((ior - 1) / (ior + 1))^2 times KHR_materials_specular's colour, at most 1, times
-/// its factor.
-Rgb dielectric_f0(const MaterialValues& m) {
-  const float r = (m.ior - 1) / (m.ior + 1), f = r * r;
-  return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
-             std::min(1.0f, f * m.specular_color.b)} *
-         m.specular;
-}
-
 /// The share of light that a lobe of this albedo lets through.
 float let_through(const LobeAlbedo& albedo) { return std::max(0.0f, 1 - max_component(albedo.total())); }
 
 }  // namespace
-
-// Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
-Bsdf::Bsdf(const MaterialValues& material, bool front) {
-  if (material.unlit) return;  // scatters nothing
-  const float metallic = material.metallic;
-  if (material.transmission * (1 - metallic) > 0) {
-    glass_.emplace(material, front);
-    rest_ = 1 - glass_->share();
-    if (!glass_->is_delta()) ++spread_;
-    if (!(rest_ > 0)) return;
-  }
-  has_lambert_ = metallic < 1;
-  // specular = metallic = 0: matte, and F0 is 0 as well
-  if (const float f90 = material.specular * (1 - metallic) + metallic; f90 > 0) {
-    const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
-    if (material.roughness < kMirrorRoughness) add<Mirror>(fresnel);
-    else add<Gloss>(fresnel, material.roughness * material.roughness, rest_);
-  }
-  lambert_.add(material.base_color * (1 - metallic));
-  diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
-}
-
-/// Adds a lobe of event S below the others.
-template <class AnyLobe, class... Parameters>
-void Bsdf::add(const Parameters&... parameters) {
-  if (!lit_) return;
-  Layer& layer = stack_[lobes_++];
-  layer.coupling_scale = coupling_scale_;
-  const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
-  if (!AnyLobe::kDelta) ++spread_;
-  const float rest = 1 - lobe.mean_albedo();
-  if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
-  else lit_ = false;
-}
 
 /// function(lobe) of a lobe of the stack.
 template <class Function>
@@ -67,10 +24,22 @@ auto Bsdf::visit(int i, Function&& function) const {
       stack_[i].lobe);
 }
 
-void Bsdf::look_up(float cos_theta, Direction& d) const {
+Bsdf Bsdf::in_frame(const Frame& from, const Frame& to) const {
+  Bsdf turned = *this;
+  if (!directed_) return turned;
+  for (int i = 0; i < lobes_; ++i)
+    std::visit(
+        [&](auto& lobe) {
+          if constexpr (requires { lobe.turn(from, to); }) lobe.turn(from, to);
+        },
+        turned.stack_[std::size_t(i)].lobe);
+  return turned;
+}
+
+void Bsdf::look_up(Direction& d) const {
   for (int i = 0; i < lobes_; ++i) {
-    new (d.albedo + i) LobeAlbedo(visit(i, [&](const auto& lobe) { return lobe.albedo(cos_theta); }));
-    d.albedo[i].coupling = d.passed * stack_[i].coupling_scale;
+    new (d.albedo + i) LobeAlbedo(visit(i, [&](const auto& lobe) { return lobe.albedo(d.w); }));
+    d.albedo[i].passed = d.passed;
     d.passed *= let_through(d.albedo[i]);
   }
 }
@@ -78,30 +47,29 @@ void Bsdf::look_up(float cos_theta, Direction& d) const {
 /// The share of uniform light that stack_[i] reflects towards d through the lobes above it.
 Rgb Bsdf::reflected(int i, const Direction& d) const {
   const Rgb total = d.albedo[i].total();
-  return i > 0 ? total * (d.albedo[i].coupling / stack_[i].coupling_scale) : total;
+  return i > 0 ? total * d.albedo[i].passed : total;
 }
 
-Rgb Bsdf::specular_albedo(float cos_o) const {
-  Direction d;
-  look_up(cos_o, d);
+Rgb Bsdf::specular_albedo(Vec3 wo) const {
+  Direction d(wo);
+  look_up(d);
   Rgb sum(0.0f);
   for (int i = 0; i < lobes_; ++i) sum += reflected(i, d);
   return sum;
 }
 
-float Bsdf::diffuse_coupling(float cos_theta) const {
+float Bsdf::diffuse_coupling(Vec3 w) const {
   if (lobes_ == 0) return 1;
   float passed = 1;
-  for (int i = 0; i < lobes_; ++i)
-    passed *= visit(i, [&](const auto& lobe) { return let_through(lobe.albedo(cos_theta)); });
+  for (int i = 0; i < lobes_; ++i) passed *= visit(i, [&](const auto& lobe) { return let_through(lobe.albedo(w)); });
   return passed * coupling_scale_;
 }
 
-Rgb Bsdf::diffuse_reflectance(float cos_o) const {
-  return (lobes_ > 0 ? lambert_.rho() * (diffuse_coupling(cos_o) / coupling_scale_) : lambert_.rho()) * rest_;
+Rgb Bsdf::diffuse_reflectance(Vec3 wo) const {
+  return (lobes_ > 0 ? lambert_.rho() * (diffuse_coupling(wo) / coupling_scale_) : lambert_.rho()) * rest_;
 }
 
-float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
+float Bsdf::arrival_weight(Vec3 wi) const { return diffuse_coupling(wi) * coupling_scale_; }
 
 /// P(D): the Lambert lobe's share of the uniform light that all lobes together reflect towards wo.
 float Bsdf::diffuse_probability(const Direction& wo) const {
@@ -197,7 +165,7 @@ void Bsdf::sample_diffuse(const Direction& wo, Vec2 u, float p, Sample& s) const
   s.pdf_solid_angle = p * lambert_.pdf_solid_angle(s.wi);
   s.weight = lambert_.rho();  // f_D cos / pdf_D; c = 1
   if (lobes_ == 0) return;
-  s.weight *= diffuse_coupling(s.wi.z) * coupling(wo) / p;
+  s.weight *= diffuse_coupling(s.wi) * coupling(wo) / p;
   s.pdf_solid_angle += (1 - p) * pdf_given_specular(s.wi, wo);
 }
 
@@ -212,12 +180,12 @@ void Bsdf::sample_specular(const Direction& wo, float u_lobe, Vec2 u, float p, S
     lobe.sample(o, u_lobe, u, s);
     if (!(s.pdf_solid_angle > 0)) return;
     s.pdf_solid_angle *= chance;
-    if constexpr (std::decay_t<decltype(lobe)>::kDelta) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(lobe)>, Mirror>) {  // has the same albedo towards wi
       s.weight = lobe.weight(o, o, chance, s.pdf_solid_angle);
     } else {
       const Direction wi = along(s.wi);
       s.weight = lobe.weight(seen(wi, i), o, chance, s.pdf_solid_angle);
-      s.pdf_solid_angle += (1 - event) * lambert_.pdf_solid_angle(s.wi);
+      if (!s.delta) s.pdf_solid_angle += (1 - event) * lambert_.pdf_solid_angle(s.wi);
     }
   });
 }

@@ -6,8 +6,10 @@
 #include <variant>
 
 #include "lib/core/sampling.h"
+#include "lib/material/coat.h"
 #include "lib/material/dielectric_lobe.h"
 #include "lib/material/opaque_lobes.h"
+#include "lib/material/sheen.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -18,11 +20,11 @@ namespace tempolux {
 /// exceptions: rough glass also scatters to wi.z < 0, and delta lobes can only be sampled.
 ///
 /// The lobes lie in a stack: those of event S, below them the Lambert lobe of event D. Each receives the light that the
-/// lobes above it do not reflect. They are coupled as by Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled
-/// Specular-Matte BRDF Model", EG 2001. Below a lobe of albedo A, f is multiplied by
+/// lobes above it do not reflect. The Lambert lobe is coupled as by Kelemen & Szirmay-Kalos, "A Microfacet Based
+/// Coupled Specular-Matte BRDF Model", EG 2001. Below a lobe of albedo A, it is multiplied by
 ///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean),
-/// with A of the largest channel and A_mean = 2 integral_0^1 A(mu) mu dmu. So below all lobes of event S, with c as
-/// their product,
+/// with A of the largest channel and A_mean its cosine-weighted mean over the hemisphere. So below all lobes of event
+/// S, with c as their product,
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
 /// The coupling is separable, a factor of wi times a factor of wo. So records, points and photons may keep light that
 /// is weighted by c(wi), and are exact for every wo; a coat or a sheen above the Lambert lobe keeps that exact.
@@ -36,11 +38,20 @@ namespace tempolux {
 /// of kMirrorRoughness under a Mirror (opaque_lobes.h), with
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic).
-/// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1.
+/// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
+/// above these, with F0 = 0.04 clearcoat and F90 = clearcoat; coat.h if the coat has a normal of its own. Between the
+/// two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider along one
+/// direction (anisotropic_ggx.h).
 ///
-/// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this. Paths carry L / n^2 in place
-/// of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the same value as one outside.
-/// sample() also serves photons, which carry watts; photon_trace.h divides their density inside a solid by n^2.
+/// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included.
+/// Paths carry L / n^2 in place of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the
+/// same value as one outside. sample() also serves photons, which carry watts; photon_trace.h divides their density
+/// inside a solid by n^2.
+///
+/// With that factor a mirror below a coat would return more light than arrives, since its wi is not spread over the
+/// hemisphere. A lobe of event S below others is multiplied by min(P(wi), P(wo)), where P(w) is the product of 1 - A(w)
+/// over the lobes above it. This is exact for mirrors. Light of wide lobes that leaves at a more grazing angle than it
+/// came loses what the coat would have sent back to the lobe: at most 5 % below a smooth coat of index 1.5.
 ///
 /// A further lobe of event S is a class with the functions that lobe.h lists, in a file of its own. Its name stands in
 /// Layer, and the constructor adds it. A further lobe of event D adds its rho to that of the Lambert lobe.
@@ -50,7 +61,14 @@ class Bsdf {
 
   /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
   /// which is outside a solid of glass. An unlit material scatters nothing.
-  explicit Bsdf(const MaterialValues& material, bool front = true);
+  explicit Bsdf(const MaterialValues& material, bool front = true) : Bsdf(material, front, nullptr) {}
+  /// The same, for a material with axes (SurfaceAxes). frame: the local frame, whose z axis is the shading normal on
+  /// the side of wo. carries: what the path carries; Carries::flux if wo leads to the light.
+  Bsdf(const MaterialValues& material, bool front, const Frame& frame, Carries carries = Carries::radiance)
+      : Bsdf(material, front, &frame, carries) {}
+
+  /// The same scattering in another local frame.
+  Bsdf in_frame(const Frame& from, const Frame& to) const;
 
   /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
   /// too.
@@ -68,16 +86,20 @@ class Bsdf {
   /// Share of light [1] that goes straight through a smooth thin wall (a pane): transmission (1 - F(cos_o)) base_color.
   /// sample() draws this passage, too. Black for other materials, and for cos_o <= 0.
   Rgb passed_straight(float cos_o) const { return glass_ && cos_o > 0 ? glass_->passed_straight(cos_o) : Rgb(0.0f); }
-  /// c(w) of the head of this class [1]; 1 for a matte material; cos_theta > 0.
-  float diffuse_coupling(float cos_theta) const;
+  /// c(w) of the head of this class [1]; 1 for a matte material; w.z > 0.
+  float diffuse_coupling(Vec3 w) const;
   /// A_S(wo) [1]: the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a
   /// matte material. Glass is not included.
-  Rgb specular_albedo(float cos_o) const;
+  Rgb specular_albedo(Vec3 wo) const;
   /// The share of uniform light that the Lambert lobe reflects towards wo [1]: (1 - transmission) rho (1 - A_S(wo)).
-  Rgb diffuse_reflectance(float cos_o) const;
+  Rgb diffuse_reflectance(Vec3 wo) const;
   /// Weight [1] of light from wi in an irradiance E: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material. With
-  /// this weight diffuse_reflectance(cos_o) E / pi is exactly the radiance that f_D reflects.
-  float arrival_weight(float cos_i) const;
+  /// this weight diffuse_reflectance(wo) E / pi is exactly the radiance that f_D reflects.
+  float arrival_weight(Vec3 wi) const;
+  /// The same for wi in scene space; normal: the z axis of the local frame.
+  float arrival_weight(Vec3 wi, Vec3 normal) const {
+    return arrival_weight(directed_ ? Frame(normal).to_local(wi) : Vec3{0, 0, dot(wi, normal)});
+  }
 
   /// A direction with the shares of uniform light that the lobes of event S reflect towards it. Looking up the shares
   /// is slow, so a caller that uses a direction several times calls along() once.
@@ -92,7 +114,7 @@ class Bsdf {
   /// The Direction of w (unit, local frame).
   Direction along(Vec3 w) const {
     Direction d(w);
-    if (lobes_ > 0 && w.z > 0) look_up(w.z, d);
+    if (lobes_ > 0 && w.z > 0) look_up(d);
     return d;
   }
 
@@ -138,15 +160,18 @@ class Bsdf {
 
  private:
   struct Layer {
-    std::variant<std::monostate, Mirror, Gloss> lobe;
-    float coupling_scale;  ///< 1 / sqrt(1 - A_mean), multiplied over the lobes above
+    Layer() {}  ///< sets no byte of the lobe: the compiler would clear all of them for every hit
+    std::variant<std::monostate, Mirror, Gloss, AnisotropicGloss, Sheen, Coat<Mirror>, Coat<Gloss>> lobe;
   };
 
+  Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries = Carries::radiance);
   template <class AnyLobe, class... Parameters>
   void add(const Parameters&... parameters);
+  void add_coat(const MaterialValues& material, const Frame* frame, Carries carries);
+  void add_reflection(const MaterialValues& material, const Schlick& fresnel, const Frame* frame);
   template <class Function>
   auto visit(int i, Function&& function) const;
-  void look_up(float cos_theta, Direction& d) const;
+  void look_up(Direction& d) const;
   LobeDirection seen(const Direction& d, int i) const { return {d.w, d.albedo[i]}; }
   Rgb reflected(int i, const Direction& d) const;
   float coupling(const Direction& d) const { return d.passed * coupling_scale_; }
@@ -167,7 +192,8 @@ class Bsdf {
   float coupling_scale_ = 1;  ///< of the Lambert lobe: 1 / sqrt(1 - A_mean), multiplied over the stack
   float rest_ = 1;            ///< share of the stack and the Lambert lobe: 1 - transmission (1 - metallic)
   bool has_lambert_ = false, diffuse_ = false;
-  bool lit_ = true;  ///< false: the stack reflects all light
+  bool lit_ = true;        ///< false: the stack reflects all light
+  bool directed_ = false;  ///< true if lobes of the stack have axes of their own
   std::optional<DielectricLobe> glass_;
 };
 

@@ -1,6 +1,8 @@
 // lib/material/lobe.h -- the functions that every lobe of a Bsdf has, with their arguments and results.
 #pragma once
 
+#include <algorithm>
+
 #include "lib/core/vec.h"
 
 namespace tempolux {
@@ -9,7 +11,7 @@ namespace tempolux {
 struct LobeAlbedo {
   Rgb single{0.0f}, multiple{0.0f};  ///< shares reflected by one and by several microfacets
   float lost = 0;                    ///< 1 - E: the share that GGX alone would lose at F = 1
-  float coupling = 1;                ///< c(w) of the lobes above, which Bsdf sets
+  float passed = 1;                  ///< share of light that passes the lobes above, which Bsdf sets
   Rgb total() const { return single + multiple; }
 };
 
@@ -18,6 +20,9 @@ struct LobeDirection {
   const Vec3& w;
   const LobeAlbedo& albedo;
 };
+
+/// Factor [1] of a lobe of event S below other lobes (head of bsdf.h).
+inline float passed_both(LobeDirection wi, LobeDirection wo) { return std::min(wi.albedo.passed, wo.albedo.passed); }
 
 struct LobeSample {
   Vec3 wi{};                  ///< unit, away from the surface
@@ -33,8 +38,8 @@ struct LobeSample {
 //
 //   static constexpr bool kDelta         true for a mirror: eval() and pdf_solid_angle() return 0
 //   float mean_albedo() const            cosine-weighted mean of the albedo [1], in its largest channel
-//   LobeAlbedo albedo(float cos) const
-//   Rgb eval(wi, wo) const               f [1/sr], with the lobe's share and the coupling to the lobes above
+//   LobeAlbedo albedo(Vec3 w) const
+//   Rgb eval(wi, wo) const               f [1/sr], with the lobe's share and passed_both()
 //   float pdf_solid_angle(Vec3 wi, wo) const         pdf with which sample() draws wi [1/sr]
 //   void sample(wo, float u_lobe, Vec2 u, LobeSample& s) const
 //                                        sets s.wi, s.delta, s.pdf_solid_angle: pdf_solid_angle(wi), 1 if delta, 0 if

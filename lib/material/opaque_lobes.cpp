@@ -1,9 +1,6 @@
 #include "lib/material/opaque_lobes.h"
 
 #include <algorithm>
-
-#include "lib/material/ggx.h"
-
 namespace tempolux {
 namespace {
 
@@ -40,12 +37,13 @@ void Mirror::sample(LobeDirection wo, float, Vec2, LobeSample& s) const {
 }
 
 Rgb Mirror::weight(LobeDirection wi, LobeDirection wo, float chance, float) const {
-  return wo.albedo.single * (wi.albedo.coupling * wo.albedo.coupling) / chance;
+  return wo.albedo.single * passed_both(wi, wo) / chance;
 }
 
-Gloss::Gloss(const Schlick& fresnel, float alpha, float share)
-    : fresnel_(fresnel), share_(share), alpha_(alpha), alpha2_(alpha * alpha), albedo_(alpha) {
-  const AlbedoPair m = albedo_.mean();
+template <class Width>
+BasicGloss<Width>::BasicGloss(const Schlick& fresnel, const Width& width, float share)
+    : fresnel_(fresnel), share_(share), width_(width) {
+  const AlbedoPair m = width_.mean_albedo();
   const float e = m.a + m.b;
   mean_lost_ = 1 - e;
   if (const float fade = smooth_step((mean_lost_ - kLeastLost) / (2 * kLeastLost)); fade > 0) {
@@ -56,42 +54,51 @@ Gloss::Gloss(const Schlick& fresnel, float alpha, float share)
       max_component(fresnel_.f0) * m.a + fresnel_.f90 * m.b + max_component(multiple_) * mean_lost_ * mean_lost_;
 }
 
-LobeAlbedo Gloss::albedo(float cos_theta) const {
-  const AlbedoPair e = albedo_.at(cos_theta);
+template <class Width>
+LobeAlbedo BasicGloss<Width>::albedo(Vec3 w) const {
+  const AlbedoPair e = width_.albedo(w);
   const float lost = std::max(0.0f, 1 - (e.a + e.b));
   return {fresnel_.f0 * e.a + Rgb(fresnel_.f90 * e.b), multiple_ * (mean_lost_ * lost), lost};
 }
 
 /// f [1/sr] without share and coupling.
-Rgb Gloss::f(LobeDirection wi, LobeDirection wo) const {
+template <class Width>
+Rgb BasicGloss<Width>::f(LobeDirection wi, LobeDirection wo) const {
   const Vec3 h = normalize(wi.w + wo.w);
-  const float d = ggx::distribution(h, alpha2_) * ggx::visibility(wi.w.z, wo.w.z, alpha2_);
+  const float d = width_.reflection(wi.w, wo.w, h);
   return fresnel_.at(dot(wo.w, h)) * d + multiple_ * (kInvPi * wi.albedo.lost * wo.albedo.lost);
 }
 
-Rgb Gloss::eval(LobeDirection wi, LobeDirection wo) const {
-  return f(wi, wo) * (wi.albedo.coupling * wo.albedo.coupling * share_);
+template <class Width>
+Rgb BasicGloss<Width>::eval(LobeDirection wi, LobeDirection wo) const {
+  return f(wi, wo) * (passed_both(wi, wo) * share_);
 }
 
 /// Visible normals for single reflection, the cosine for multiple reflection.
-float Gloss::pdf_solid_angle(Vec3 wi, LobeDirection wo) const {
+template <class Width>
+float BasicGloss<Width>::pdf_solid_angle(Vec3 wi, LobeDirection wo) const {
   const float share = multiple_share(wo.albedo);
-  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo.w), wo.w.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
+  return (1 - share) * width_.pdf_reflected(normalize(wi + wo.w), wo.w) + share * pdf_hemisphere_cos(wi.z);
 }
 
-void Gloss::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const {
+template <class Width>
+void BasicGloss<Width>::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const {
   if (!(max_component(wo.albedo.single) > 0)) return;
   if (u_lobe < multiple_share(wo.albedo)) {
     s.wi = sample_hemisphere_cos(u);
   } else {
-    const Vec3 h = ggx::sample_visible_normal(wo.w, alpha_, u);
+    const Vec3 h = width_.sample_normal(wo.w, u);
     s.wi = normalize(h * (2 * dot(wo.w, h)) - wo.w);
   }
   if (s.wi.z > 0) s.pdf_solid_angle = pdf_solid_angle(s.wi, wo);  // else reflected into the surface: absorbed
 }
 
-Rgb Gloss::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {
-  return f(wi, wo) * (wi.albedo.coupling * wo.albedo.coupling * (wi.w.z / pdf));
+template <class Width>
+Rgb BasicGloss<Width>::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {
+  return f(wi, wo) * (passed_both(wi, wo) * (wi.w.z / pdf));
 }
+
+template class BasicGloss<RoundGgx>;
+template class BasicGloss<AnisotropicGgx>;
 
 }  // namespace tempolux

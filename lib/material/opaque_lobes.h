@@ -3,6 +3,8 @@
 
 #include "lib/core/sampling.h"
 #include "lib/material/albedo.h"
+#include "lib/material/anisotropic_ggx.h"
+#include "lib/material/ggx.h"
 #include "lib/material/lobe.h"
 
 namespace tempolux {
@@ -37,7 +39,7 @@ class Mirror {
 
   explicit Mirror(const Schlick& fresnel) : fresnel_(fresnel) {}
   float mean_albedo() const { return max_component(fresnel_.mean()); }
-  LobeAlbedo albedo(float cos_theta) const { return {.single = fresnel_.at(cos_theta)}; }
+  LobeAlbedo albedo(Vec3 w) const { return {.single = fresnel_.at(w.z)}; }
   Rgb eval(LobeDirection, LobeDirection) const { return Rgb(0.0f); }
   float pdf_solid_angle(Vec3, LobeDirection) const { return 0; }
   void sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const;
@@ -45,6 +47,25 @@ class Mirror {
 
  private:
   Schlick fresnel_;
+};
+
+/// GGX of equal width all round (ggx.h).
+class RoundGgx {
+ public:
+  static constexpr bool kDirected = false;
+
+  explicit RoundGgx(float alpha) : alpha_(alpha), alpha2_(alpha * alpha), albedo_(alpha) {}
+  AlbedoPair albedo(Vec3 w) const { return albedo_.at(w.z); }
+  AlbedoPair mean_albedo() const { return albedo_.mean(); }
+  float reflection(Vec3 wi, Vec3 wo, Vec3 h) const {
+    return ggx::distribution(h, alpha2_) * ggx::visibility(wi.z, wo.z, alpha2_);
+  }
+  Vec3 sample_normal(Vec3 wo, Vec2 u) const { return ggx::sample_visible_normal(wo, alpha_, u); }
+  float pdf_reflected(Vec3 h, Vec3 wo) const { return ggx::pdf_reflected(h, wo.z, alpha2_); }
+
+ private:
+  float alpha_, alpha2_;
+  GgxAlbedo albedo_;
 };
 
 /// GGX (ggx.h) with Schlick's Fresnel term F at wo h. GGX alone loses the light that microfacets reflect more than once
@@ -55,28 +76,35 @@ class Mirror {
 /// where E is the albedo of GGX for F = 1. f_ms is reciprocal, and for F = 1 all light is reflected. The directional
 /// albedo A(w) is F0 a + F90 b + F_ms (1 - E) with a + b = E; a and b come from a table. f_ms is faded in between the
 /// roughnesses 0.23 and 0.34, where GGX loses 1 and 3 % on average. Below them grazing light loses up to 11 %.
-class Gloss {
+///
+/// Width says how wide GGX is: RoundGgx or AnisotropicGgx (anisotropic_ggx.h).
+template <class Width>
+class BasicGloss {
  public:
   static constexpr bool kDelta = false;
 
-  Gloss(const Schlick& fresnel, float alpha, float share);
+  BasicGloss(const Schlick& fresnel, const Width& width, float share);
   float mean_albedo() const { return mean_albedo_; }
-  LobeAlbedo albedo(float cos_theta) const;
+  LobeAlbedo albedo(Vec3 w) const;
   Rgb eval(LobeDirection wi, LobeDirection wo) const;
   float pdf_solid_angle(Vec3 wi, LobeDirection wo) const;
   void sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const;
   Rgb weight(LobeDirection wi, LobeDirection wo, float chance, float pdf) const;
+
+  /// Expresses the width's axes in another local frame.
+  void turn(const Frame& from, const Frame& to) requires Width::kDirected { width_.turn(from, to); }
 
  private:
   Rgb f(LobeDirection wi, LobeDirection wo) const;
 
   Schlick fresnel_;
   float share_;
-  float alpha_, alpha2_;
-  GgxAlbedo albedo_;
+  Width width_;
   Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in
   float mean_lost_;     ///< 1 - E_mean
   float mean_albedo_;
 };
+using Gloss = BasicGloss<RoundGgx>;
+using AnisotropicGloss = BasicGloss<AnisotropicGgx>;
 
 }  // namespace tempolux

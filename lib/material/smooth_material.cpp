@@ -1,5 +1,7 @@
 #include "lib/material/smooth_material.h"
 
+#include <algorithm>
+
 #include "lib/material/bsdf.h"
 
 namespace tempolux {
@@ -9,6 +11,11 @@ namespace {
 /// ray from a matte surface meets this solid angle with a probability of at most 4 alpha^2, which is 1 in 10^4 at this
 /// roughness. So 100 samples of a pixel usually miss the light, and a sample that meets it makes a white dot.
 constexpr float kSharpRoughness = 0.07f;
+
+/// The least roughness of the lobes.
+float sharpest(const MaterialValues& m) {
+  return m.clearcoat > 0 ? std::min(m.roughness, m.clearcoat_roughness) : m.roughness;
+}
 
 }  // namespace
 
@@ -20,7 +27,7 @@ std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes) {
       continue;
     const Bsdf bsdf(material);
     if (!panes && max_component(bsdf.passed_straight(1)) > 0) continue;
-    if (bsdf.has_specular() && (bsdf.specular_is_delta() || material.roughness < kSharpRoughness))
+    if (bsdf.has_specular() && (bsdf.specular_is_delta() || sharpest(material) < kSharpRoughness))
       first = surface.material;
   }
   return first;

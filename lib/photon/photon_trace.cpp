@@ -70,14 +70,15 @@ struct Arrival {
   Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
     const Vec3 out = geometric.to_local(travel), in = geometric.to_local(wi);
+    const auto by_geometric = [&] { return bsdf.in_frame(frame, geometric).eval_diffuse(out, in); };
     if (!(out.z > 0)) return Rgb(0.0f);
     const Vec3 shaded = frame.to_local(travel);
     const bool by_shading = shaded.z > kLooksAway;
     // Light from behind the shading normal is visible only where the geometric normal is used, and only D scatters it.
-    if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : bsdf.eval_diffuse(out, in) * kPi;
+    if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : by_geometric() * kPi;
     const float p = bsdf.pdf_diffuse(chosen.wi, wi_local) / pdf_hemisphere_cos(chosen.wi.z);
     return by_shading ? bsdf.eval_diffuse(shaded, wi_local) * (kPi * shading_correction / p)
-                      : bsdf.eval_diffuse(out, in) * (kPi / p);
+                      : by_geometric() * (kPi / p);
   }
 
   /// |wi.n| / |wi.n_g| for another normal n; 0 if the light comes from behind n.
@@ -95,7 +96,7 @@ struct Arrival {
   /// shading normal are added.
   Bsdf::Sample scatter_by_geometric_normal(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
-    Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
+    Bsdf::Sample next = bsdf.in_frame(frame, geometric).sample(geometric.to_local(wi), u_lobe, u);
     travel = geometric.to_world(next.wi);
     const float side = next.transmitted ? -1.0f : 1.0f;
     if (next.diffuse || side * dot(travel, normal) > kLooksAway) next.weight = Rgb(0.0f);
@@ -132,7 +133,7 @@ struct Textured {
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
         material(frame, point),
-        bsdf(material, dot(point.normal_geometric, travel) < 0),
+        bsdf(material, dot(point.normal_geometric, travel) < 0, Arrival(point, travel).frame, Carries::flux),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
@@ -456,7 +457,7 @@ float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, st
 void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uint32_t bounce,
                          PhotonBatch& batch) const {
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
-  float weight = at.bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
+  float weight = at.bsdf.arrival_weight(at.wi_local) * at.shading_correction;
   if (directions_ && kind == PathKind::caustic) [[unlikely]]
     weight = at.correction_by(at.smooth);
   if (!(stores_[std::size_t(kind)] && at.bsdf.has_lambert() && weight > 0)) return;

@@ -43,7 +43,7 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   const Vec3 normal = seen->surface.normal_geometric;
   const bool front = dot(normal, seen->normal) > 0;
   const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
-  const Bsdf bsdf(material, front);
+  const Bsdf bsdf(material, front, Frame(seen->normal));
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
   const FootprintLight light =
       density.estimate(seen->surface.position, {front ? normal : -normal, seen->normal, seen->normal, &bsdf});

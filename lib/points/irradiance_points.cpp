@@ -175,7 +175,7 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   const SurfaceMaterial material(tracer.frame(), *surface);  // applies the normal map to surface->normal
   scattering.normal = face_forward(surface->normal, point.normal);
   const bool on_front = dot(surface->normal_geometric, point.normal) > 0;
-  const Bsdf bsdf(material, on_front);
+  const Bsdf bsdf(material, on_front, Frame(scattering.normal));
   if (bsdf.has_diffuse() && bsdf.has_specular()) scattering.coat = bsdf;
   return scattering;
 }

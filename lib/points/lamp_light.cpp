@@ -41,15 +41,16 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const SurfaceMaterial material(tracer.frame(), place);
   const Vec3 wi = -emission.travel;
   const bool front = dot(place.normal_geometric, wi) > 0;
-  const Bsdf bsdf(material, front);
-  if (!bsdf.has_diffuse()) return std::nullopt;
   const Vec3 normal = front ? place.normal_geometric : -place.normal_geometric;
-  const float cosine = dot(wi, face_forward(place.normal, normal)), geometric = dot(wi, normal);
+  const Vec3 shading = face_forward(place.normal, normal);
+  const Bsdf bsdf(material, front, Frame(shading));
+  if (!bsdf.has_diffuse()) return std::nullopt;
+  const float cosine = dot(wi, shading), geometric = dot(wi, normal);
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
   float share = cosine / geometric;
-  if (bsdf.has_specular()) share *= bsdf.arrival_weight(cosine);
+  if (bsdf.has_specular()) share *= bsdf.arrival_weight(wi, shading);
   if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
     const Ray way{ray.origin, ray.direction, 0, hit.t};
     share *= media_transmittance(*media, way, {random, 0, way_shadow});

@@ -178,7 +178,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
     begin_matte(at.known, state);
   } else {
     state.specular = true;
-    state.widen(x.gloss_density(next.wi));
+    if (!next.delta) state.widen(x.gloss_density(next.wi));
   }
   event.pass(x.surface, at.material, dot(x.surface.normal_geometric, state.ray.direction) < 0, state.inside);
   if (!survives(state, kLargestPhotonSurvival)) return false;
@@ -291,7 +291,7 @@ void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, cons
   const Rgb irradiance(known_->lamp_spots->arriving(place, 1, within, rays).irradiance);
   count(rays.shadow_rays, counts_.shadow, state);
   result[state.path.after(true).after(true).layer()] +=
-      state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share) * irradiance;
+      state.throughput * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share) * irradiance;
 }
 
 /// Samples light at a surface; at the first matte surface with effort_.lit samples, which are added to the part `lit`.
@@ -374,7 +374,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   if (state.known.has(LightKind::bright) && !state.specular)
     at.remaining_share = known.remaining_share(*stored_at.surface, stored_at.geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
-  const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
+  const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share);
   // If the camera sees this surface directly, stored light belongs to layer indirect; if it sees the surface by an
   // event S or through a medium, to layer specular or volume.
   const Layer layer = path.after(true).after(true).layer();

@@ -50,9 +50,9 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
     shown.id = mirrored ? mixed(shown.id, chain.point().object) : chain.point().object;
     shown.depth = float(view.depth(eye.origin + eye.direction * chain.way()));
     shown.normal = shading.normal;
-    const float cosine = std::max(shading.wo_local.z, 1e-3f);
-    shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(cosine) : Rgb(mirrored ? 0.0f : 1.0f);
-    if (mirrored) shown.albedo += shading.bsdf.diffuse_reflectance(cosine);
+    const Vec3 wo{shading.wo_local.x, shading.wo_local.y, std::max(shading.wo_local.z, 1e-3f)};
+    shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(wo) : Rgb(mirrored ? 0.0f : 1.0f);
+    if (mirrored) shown.albedo += shading.bsdf.diffuse_reflectance(wo);
     const std::optional<Scattered> next = chain.events() < kMostMirrors ? sharp_way(shading) : std::nullopt;
     if (!next) return shown;
     chain.go_on(*next);

@@ -106,12 +106,13 @@ bool keeps_axes(const Texture& texture) {
 }
 
 /// Reads tangents: a unit vector and the sign of the third axis (glTF 2.0, 3.7.2.1). Reads nothing unless the primitive
-/// has normals and its material a normal map that keeps the axes; read_primitive() then computes tangents if needed.
+/// has normals and its material a map along tangents that keeps the axes; read_primitive() then computes tangents if needed.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];
   if (found == source.attributes.end() || primitive.normals.empty()) return;
-  if (!material.textures || !material.textures->normal || !keeps_axes(material.textures->normal)) return;
+  const Texture* const along = material.textures ? material.textures->along_tangents() : nullptr;
+  if (!along || !keeps_axes(*along)) return;
   std::vector<std::uint32_t> unusable;  // become 0
   const std::vector<double> numbers = read_numbers(import, found->second, 4, place, unusable);
   const std::size_t count = primitive.positions.size();
@@ -235,8 +236,9 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   note_ignored(import, source);
   drop_unused_vertices(primitive);
   const Material& material = import.scene.materials[primitive.material];
-  if (primitive.tangents.empty() && material.textures && material.textures->normal) {
-    make_tangents(primitive, material.textures->normal);
+  const Texture* const along = material.textures ? material.textures->along_tangents() : nullptr;
+  if (primitive.tangents.empty() && along) {
+    make_tangents(primitive, *along);
     import.take_memory(primitive.tangents.size() * (sizeof(Vec3) * (1 + primitive.targets.size()) + sizeof(float)),
                        place);
   }

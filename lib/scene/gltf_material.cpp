@@ -111,11 +111,8 @@ void check_numbers(Import& import, const MaterialProperty& property, const std::
 
 /// Textures that the specification has and this program does not read.
 void ignore_textures(Import& import, const tinygltf::Material& source, const std::string& place) {
-  for (const auto& [extension, texture] : {std::pair{"KHR_materials_specular", "specularTexture"},
-                                           {"KHR_materials_specular", "specularColorTexture"},
-                                           {"KHR_materials_volume", "thicknessTexture"}})
-    if (const auto found = source.extensions.find(extension); found != source.extensions.end())
-      ignore_texture({import, found->second, place + ".extensions." + extension}, texture);
+  if (const auto found = source.extensions.find("KHR_materials_volume"); found != source.extensions.end())
+    ignore_texture({import, found->second, place + ".extensions.KHR_materials_volume"}, "thicknessTexture");
   if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
 }
 
@@ -153,6 +150,12 @@ MaterialTextures read_textures(Import& import, const tinygltf::Material& source,
   }
   textures.normal_scale =
       limited(import, source.normalTexture.scale, -kNoUpper, kNoUpper, place + ".normalTexture.scale");
+  if (textures.clearcoat_normal) {
+    const std::string there = place + ".extensions.KHR_materials_clearcoat.clearcoatNormalTexture";
+    const Value& info = source.extensions.at("KHR_materials_clearcoat").Get("clearcoatNormalTexture");
+    textures.clearcoat_normal_scale = limited(import, ExtensionReader{import, info, there}.number("scale", 1),
+                                              -kNoUpper, kNoUpper, there + ".scale");
+  }
   return textures;
 }
 
@@ -173,6 +176,7 @@ Material read_material(Import& import, std::size_t index, ColorFactors& emission
   if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
   MaterialTextures textures = read_textures(import, source, place);
   read_specular_glossiness(import, source, place, material, textures);
+  textures.grain = source.extensions.contains("KHR_materials_anisotropy");
   if (textures.any()) material.textures = textures;
   ignore_textures(import, source, place);
   return material;

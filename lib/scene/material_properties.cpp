@@ -32,7 +32,19 @@ constexpr std::array kProperties{
     MaterialProperty{"attenuation distance", "/extensions/KHR_materials_volume/attenuationDistance",
                      &M::attenuation_distance, kLeastDistance},
     MaterialProperty{"double sided", "/doubleSided", &M::double_sided},
-    MaterialProperty{"unlit", "/extensions/KHR_materials_unlit", &M::unlit, 0, kNoUpper, presence}};
+    MaterialProperty{"unlit", "/extensions/KHR_materials_unlit", &M::unlit, 0, kNoUpper, presence},
+    MaterialProperty{"clearcoat", "/extensions/KHR_materials_clearcoat/clearcoatFactor", &M::clearcoat, 0, 1, value,
+                     true},
+    MaterialProperty{"clearcoat roughness", "/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+                     &M::clearcoat_roughness, 0, 1, value, true},
+    MaterialProperty{"sheen colour", "/extensions/KHR_materials_sheen/sheenColorFactor", &M::sheen_color, 0, 1, value,
+                     true},
+    MaterialProperty{"sheen roughness", "/extensions/KHR_materials_sheen/sheenRoughnessFactor", &M::sheen_roughness, 0,
+                     1, value, true},
+    MaterialProperty{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyStrength", &M::anisotropy, 0, 1,
+                     value, true},
+    MaterialProperty{"anisotropy rotation", "/extensions/KHR_materials_anisotropy/anisotropyRotation",
+                     &M::anisotropy_rotation, -kNoUpper, kNoUpper, value, true}};
 
 using T = MaterialTextures;
 constexpr std::array kTextures{
@@ -40,21 +52,36 @@ constexpr std::array kTextures{
     MaterialTexture{"metallic roughness", "/pbrMetallicRoughness/metallicRoughnessTexture", &T::metallic_roughness},
     MaterialTexture{"normal", "/normalTexture", &T::normal},
     MaterialTexture{"emission", "/emissiveTexture", &T::emission},
-    MaterialTexture{"transmission", "/extensions/KHR_materials_transmission/transmissionTexture", &T::transmission}};
+    MaterialTexture{"transmission", "/extensions/KHR_materials_transmission/transmissionTexture", &T::transmission},
+    MaterialTexture{"specular", "/extensions/KHR_materials_specular/specularTexture", &T::specular},
+    MaterialTexture{"specular colour", "/extensions/KHR_materials_specular/specularColorTexture", &T::specular_color},
+    MaterialTexture{"clearcoat", "/extensions/KHR_materials_clearcoat/clearcoatTexture", &T::clearcoat},
+    MaterialTexture{"clearcoat roughness", "/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
+                    &T::clearcoat_roughness},
+    MaterialTexture{"clearcoat normal", "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
+                    &T::clearcoat_normal},
+    MaterialTexture{"sheen colour", "/extensions/KHR_materials_sheen/sheenColorTexture", &T::sheen_color},
+    MaterialTexture{"sheen roughness", "/extensions/KHR_materials_sheen/sheenRoughnessTexture", &T::sheen_roughness},
+    MaterialTexture{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyTexture", &T::anisotropy}};
 
 // A new member changes these counts. It needs a row above, in which reader, hash and animation find it.
 [[maybe_unused]] constexpr auto members = [](const MaterialValues& values) {
   [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
-                                thin_walled, attenuation_color, attenuation_distance, double_sided, unlit] = values;
-  return 13;
+                                thin_walled, attenuation_color, attenuation_distance, double_sided, unlit, clearcoat,
+                                clearcoat_roughness, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation,
+                                axes] = values;
+  return 20;
 };
-static_assert(kProperties.size() == 13 + 2);  // besides: alpha cutoff, the second factor of the emission
+// Besides: alpha cutoff, the second factor of the emission. The axes are of a hit, not of the file.
+static_assert(kProperties.size() == 20 + 2 - 1);
 [[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
-  [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, normal_scale,
+  [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, specular,
+                                specular_color, clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color,
+                                sheen_roughness, anisotropy, normal_scale, clearcoat_normal_scale, grain,
                                 vertex_colors] = values;
-  return 7;
+  return 17;
 };
-static_assert(kTextures.size() == 7 - 2);  // normal_scale and vertex_colors are no textures
+static_assert(kTextures.size() == 17 - 4);  // the scales, vertex_colors and grain are no textures
 
 Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& property) {
   Rgb colour;

@@ -33,6 +33,9 @@ struct MaterialProperty {
   std::variant<float Material::*, Rgb Material::*, bool Material::*> member;
   double lower = 0, upper = std::numeric_limits<float>::max();
   PropertyRole role = PropertyRole::value;
+  /// Hashed with its name, and only if it is not the default. Such rows can be added without changing the hash of a
+  /// material that does not use them.
+  bool hashed_if_set = false;
 
   /// Numbers of a value: 1, 3 or 4.
   std::size_t components() const;

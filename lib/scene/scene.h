@@ -23,6 +23,16 @@ class TextureImages;  // lib/image/texture_images.h
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< in place of an index: there is no such thing
 
+/// Directions of a surface at one point that its material needs besides the shading normal; unit, scene space, of the
+/// triangle's front side. Zero: there is none.
+struct SurfaceAxes {
+  Vec3 coat_normal{0, 0, 0};  ///< normal of the clearcoat; none: the shading normal
+  Vec3 grain{0, 0, 0};        ///< direction along which anisotropy adds roughness, roughly perpendicular to the normal
+
+  bool any() const { return coat_normal != Vec3{} || grain != Vec3{}; }
+  bool operator==(const SurfaceAxes&) const = default;
+};
+
 /// Properties of a material at one point: metallic-roughness of glTF 2.0 with the extensions that docs/scene-files.md
 /// lists.
 struct MaterialValues {
@@ -39,7 +49,14 @@ struct MaterialValues {
   Rgb attenuation_color{1.0f};
   float attenuation_distance = std::numeric_limits<float>::infinity();
   bool double_sided = false;
-  bool unlit = false;  ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
+  bool unlit = false;             ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
+  float clearcoat = 0;            ///< KHR_materials_clearcoat: factor of the coat's Fresnel term, [0, 1]
+  float clearcoat_roughness = 0;  ///< perceptual, [0, 1]
+  Rgb sheen_color{0.0f};          ///< KHR_materials_sheen, [0, 1]
+  float sheen_roughness = 0;      ///< perceptual, [0, 1]
+  float anisotropy = 0;           ///< KHR_materials_anisotropy: strength, [0, 1]
+  float anisotropy_rotation = 0;  ///< from the surface's tangent, counter-clockwise
+  SurfaceAxes axes;               ///< at a hit; SurfaceMaterial sets them
 
   /// True if the material emits light where its texture is not black.
   bool emissive() const { return max_component(emission) > 0; }
@@ -62,15 +79,32 @@ struct Texture {
 
 /// The textures of a material; each multiplies the property of its name. Vertex colours multiply base colour and alpha.
 struct MaterialTextures {
-  Texture base_color;          ///< sRGB; its A multiplies Material::alpha
-  Texture metallic_roughness;  ///< linear: B metallic, G roughness
-  Texture normal;              ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
-  Texture emission;            ///< sRGB
-  Texture transmission;        ///< linear: R
-  float normal_scale = 1;
+  Texture base_color;           ///< sRGB; its A multiplies Material::alpha
+  Texture metallic_roughness;   ///< linear: B metallic, G roughness
+  Texture normal;               ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
+  Texture emission;             ///< sRGB
+  Texture transmission;         ///< linear: R
+  Texture specular;             ///< linear: A
+  Texture specular_color;       ///< sRGB
+  Texture clearcoat;            ///< linear: R
+  Texture clearcoat_roughness;  ///< linear: G
+  Texture clearcoat_normal;     ///< as normal; without it the coat has the smooth normal
+  Texture sheen_color;          ///< sRGB
+  Texture sheen_roughness;      ///< linear: A
+  Texture anisotropy;           ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
+  float normal_scale = 1, clearcoat_normal_scale = 1;
+  bool grain = false;          ///< true if the material has anisotropy, so that primitives need tangents
   bool vertex_colors = false;  ///< true if some primitives of the material have Primitive::colors
 
-  bool any() const { return base_color || metallic_roughness || normal || emission || transmission || vertex_colors; }
+  bool any() const {
+    return base_color || metallic_roughness || normal || emission || transmission || specular || specular_color ||
+           clearcoat || clearcoat_roughness || clearcoat_normal || sheen_color || sheen_roughness || anisotropy ||
+           grain || vertex_colors;
+  }
+  /// The texture whose coordinates give a primitive its tangents; nullptr: the material needs none.
+  const Texture* along_tangents() const {
+    return normal ? &normal : clearcoat_normal ? &clearcoat_normal : grain ? &anisotropy : nullptr;
+  }
   bool operator==(const MaterialTextures&) const = default;
 };
 

@@ -82,8 +82,14 @@ void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Tex
 
 /// Adds all properties that scatter light. Emission is in lights_hash().
 void add_material(Hasher& hasher, const Scene& scene, const Material& material) {
+  static const Material kDefault;
   for (const MaterialProperty& property : material_properties()) {
     if (property.changes_emission() || property.role == PropertyRole::alpha_cutoff) continue;
+    if (property.hashed_if_set) {
+      const auto same = [&](auto member) { return material.*member == kDefault.*member; };
+      if (std::visit(same, property.member)) continue;
+      hasher.add(std::string_view(property.name));
+    }
     if (const auto* number = std::get_if<float Material::*>(&property.member)) hasher.add(material.**number);
     else if (const auto* colour = std::get_if<Rgb Material::*>(&property.member)) hasher.add(material.**colour);
     else hasher.add(std::uint32_t(material.*std::get<bool Material::*>(property.member)));
@@ -96,6 +102,7 @@ void add_material(Hasher& hasher, const Scene& scene, const Material& material) 
     if (texture.member != &MaterialTextures::emission)
       add_texture(hasher, scene, texture.name, (*material.textures).*texture.member);
   if (material.textures->normal) hasher.add(material.textures->normal_scale);
+  if (material.textures->clearcoat_normal) hasher.add(material.textures->clearcoat_normal_scale);
 }
 
 /// Adds a member of a camera, unless it has no effect.

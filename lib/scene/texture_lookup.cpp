@@ -96,7 +96,7 @@ bool TextureSpot::axes_of_coordinates(const Texture& normal_map, Vec3 normal, Ve
 
 Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const {
   Vec3 right, up;
-  if (!axes_of_tangents(normal, right, up) && !axes_of_coordinates(normal_map, normal, right, up)) return normal;
+  if (!axes(normal_map, normal, right, up)) return normal;
   const Rgba code = read(normal_map, TextureTransfer::linear);
   Vec3 bent =
       normalize(right * (scale * (2 * code[0] - 1)) + up * (scale * (2 * code[1] - 1)) + normal * (2 * code[2] - 1));

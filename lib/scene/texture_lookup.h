@@ -41,6 +41,12 @@ class TextureSpot {
   /// without either the result is `normal`.
   Vec3 bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const;
 
+  /// The axes of a map along tangents at `normal` (unit), as bend() has them: unit, perpendicular to `normal`. False if
+  /// there are none.
+  bool axes(const Texture& map, Vec3 normal, Vec3& right, Vec3& up) const {
+    return axes_of_tangents(normal, right, up) || axes_of_coordinates(map, normal, right, up);
+  }
+
  private:
   using Corners = std::array<Vec2, 3>;
   float level(const Corners& corners, const TexturePyramid& pyramid) const;

@@ -1,4 +1,4 @@
-// make_material_tables FILE -- writes the C++ source of the tables of albedo.h and glass_albedo.h. The build runs it.
+// make_material_tables FILE -- writes the C++ source of the tables of albedo.h, glass_albedo.h, anisotropic_ggx.h and sheen.h. The build runs it.
 #include <cstdio>
 #include <span>
 
@@ -70,14 +70,54 @@ void write_glass(std::FILE* out) {
   std::fputs("}  // namespace tempolux::glass_table\n", out);
 }
 
+void write_anisotropic(std::FILE* out) {
+  using namespace anisotropic_table;
+  std::vector<double> albedo, mean;
+  for (int row = 0; row < kRows; ++row)
+    for (int width = 0; width < kWidths; ++width) {
+      std::vector<integrals::Albedo> nodes;
+      for (int column = 0; column < kColumns; ++column)
+        for (int turn = 0; turn < kTurns; ++turn) {
+          nodes.push_back(node(row, width, column, turn));
+          albedo.insert(albedo.end(), {nodes.back().total, nodes.back().b});
+        }
+      const integrals::Albedo m = mean_of(row, width, nodes);
+      mean.insert(mean.end(), {m.total, m.b});
+    }
+  std::fputs("namespace tempolux::anisotropic_table {\n", out);
+  define(out, "kAlbedo[kRows][kWidths][kColumns][kTurns][2]", {kRows, kWidths, kColumns, kTurns, 2}, albedo);
+  define(out, "kMean[kRows][kWidths][2]", {kRows, kWidths, 2}, mean);
+  std::fputs("}  // namespace tempolux::anisotropic_table\n", out);
+}
+
+void write_sheen(std::FILE* out) {
+  using namespace sheen_table;
+  const integrals::GaussLegendre rule(64);
+  std::vector<double> albedo, mean;
+  for (int row = 0; row < kRows; ++row) {
+    const Row values(double(row) / (kRows - 1), rule);
+    for (int column = 0; column < kColumns; ++column)
+      albedo.insert(albedo.end(), {values.albedo[std::size_t(column)], values.raw[std::size_t(column)]});
+    mean.push_back(values.mean());
+  }
+  std::fputs("namespace tempolux::sheen_table {\n", out);
+  define(out, "kAlbedo[kRows][kColumns][2]", {kRows, kColumns, 2}, albedo);
+  define(out, "kMean[kRows]", {kRows}, mean);
+  std::fputs("}  // namespace tempolux::sheen_table\n", out);
+}
+
 }  // namespace
 }  // namespace tempolux
 
 int main(int argc, char** argv) {
   std::FILE* out = argc == 2 ? std::fopen(argv[1], "w") : nullptr;
   if (!out) return 2;
-  std::fputs("#include \"lib/material/albedo.h\"\n#include \"lib/material/glass_albedo.h\"\n\n", out);
+  std::fputs(
+      "#include \"lib/material/albedo.h\"\n#include \"lib/material/glass_albedo.h\"\n"
+             "#include \"lib/material/anisotropic_ggx.h\"\n#include \"lib/material/sheen.h\"\n\n", out);
   tempolux::write_albedo(out);
   tempolux::write_glass(out);
+  tempolux::write_anisotropic(out);
+  tempolux::write_sheen(out);
   return std::fclose(out) ? 1 : 0;
 }

@@ -4,10 +4,13 @@
 #include <algorithm>
 
 #include "lib/material/albedo.h"
+#include "lib/material/anisotropic_ggx.h"
 #include "lib/material/cubic_weights.h"
 #include "lib/material/glass_albedo.h"
+#include "lib/material/tables/anisotropic_integrals.h"
 #include "lib/material/tables/ggx_integrals.h"
 #include "lib/material/tables/glass_integrals.h"
+#include "lib/material/tables/sheen_integrals.h"
 
 namespace tempolux::albedo_table {
 
@@ -71,3 +74,85 @@ inline double mean_of_row(int side, int plane, int row, const std::vector<double
 }
 
 }  // namespace tempolux::glass_table
+
+namespace tempolux::anisotropic_table {
+
+/// E and m at a node, by 64 x 32 visible normals.
+inline integrals::Albedo node(int row, int width, int column, int turn) {
+  const double b = alpha_b_of(double(row) / (kRows - 1)), t = alpha_t_of(b, double(width) / (kWidths - 1));
+  const double angle = angle_of(double(turn) / (kTurns - 1));
+  const double mu = cos_of(double(column) / (kColumns - 1), alpha_at(t, b, angle));
+  const double cos = std::clamp(mu, 1e-6 * b, 1.0);
+  const integrals::Albedo e = integrals::anisotropic_albedo(cos, angle, t, b, 32);
+  return {e.total, (1 - std::pow(e.b / e.total, 0.2)) / (cos + alpha_at(t, b, angle))};
+}
+
+/// Cosine-weighted means of E and b that AnisotropicGgx interpolates between a row's nodes, by midpoints of steps of
+/// the positions.
+inline integrals::Albedo mean_of(int row, int width, const std::vector<integrals::Albedo>& nodes) {
+  const double b = alpha_b_of(double(row) / (kRows - 1)), t = alpha_t_of(b, double(width) / (kWidths - 1));
+  constexpr int kSteps = 256, kAngles = 64;
+  integrals::Albedo sum{0, 0};
+  for (int a = 0; a < kAngles; ++a) {
+    const double turn = (a + 0.5) / kAngles, alpha = alpha_at(t, b, angle_of(turn));
+    float around[4], across[4];
+    const int first = cubic_weights(float(turn), kTurns, around);
+    double before = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const int column = cubic_weights(float((i + 0.5) / kSteps), kColumns, across);
+      const double cos = cos_of((i + 1.0) / kSteps, alpha), weight = (cos * cos - before * before) / kAngles;
+      const double middle = cos_of((i + 0.5) / kSteps, alpha);
+      double total = 0, m = 0;
+      before = cos;
+      for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < 4; ++l) {
+          const integrals::Albedo& e = nodes[std::size_t((column + k) * kTurns + first + l)];
+          total += double(across[k] * around[l]) * e.total;
+          m += double(across[k] * around[l]) * e.b;
+        }
+      sum.total += weight * total;
+      sum.b += weight * total * std::pow(std::clamp(1 - m * (middle + alpha), 0.0, 1.0), 5);
+    }
+  }
+  return sum;
+}
+
+}  // namespace tempolux::anisotropic_table
+
+namespace tempolux::sheen_table {
+
+/// The values of one row.
+struct Row {
+  std::vector<double> albedo, raw;  ///< albedo for white, and E, by column
+
+  Row(double position, const integrals::GaussLegendre& rule) {
+    const double r = roughness_of_row(position), alpha = r * r;
+    const auto one = [](double) { return 1.0; };
+    std::vector<double> e;  // E at the nodes of the rule
+    for (const double x : rule.x) e.push_back(integrals::sheen_integral(x * x * x, alpha, rule, one));
+    for (int column = 0; column < kColumns; ++column) {
+      const double cos = cos_of_column(double(column) / (kColumns - 1));
+      raw.push_back(integrals::sheen_integral(cos, alpha, rule, one));
+      std::size_t at = 0;
+      albedo.push_back(integrals::sheen_integral(
+          cos, alpha, rule, [&](double) { return 1 / std::max({1.0, raw.back(), e[at++]}); }));
+    }
+  }
+  /// Cosine-weighted mean of the values that Sheen interpolates.
+  double mean() const {
+    constexpr int kSteps = 4096;
+    double sum = 0, before = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      float weight[4];
+      const int first = cubic_weights(float((i + 0.5) / kSteps), kColumns, weight);
+      double value = 0;
+      for (int k = 0; k < 4; ++k) value += double(weight[k]) * albedo[std::size_t(first + k)];
+      const double cos = std::pow((i + 1.0) / kSteps, 3);
+      sum += std::clamp(value, 0.0, 1.0) * (cos * cos - before * before);
+      before = cos;
+    }
+    return sum;
+  }
+};
+
+}  // namespace tempolux::sheen_table

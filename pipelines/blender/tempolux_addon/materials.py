@@ -19,9 +19,9 @@ from .notes import Damage
 from .values import Source, as_number, as_tuple, is_constant, pick, resolve, times
 
 RENDERED = {"KHR_materials_specular", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume",
-            "KHR_materials_emissive_strength"}     # extensions that tempolux renders; others are written and named
-WORDS = {"KHR_materials_clearcoat": "coat", "KHR_materials_sheen": "sheen", "KHR_materials_iridescence": "thin film",
-         "KHR_materials_anisotropy": "anisotropy"}
+            "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_sheen",
+            "KHR_materials_anisotropy"}     # extensions that tempolux renders; others are written and named
+WORDS = {"KHR_materials_iridescence": "thin film"}
 SINGLE = (
     "ior",
     "level",

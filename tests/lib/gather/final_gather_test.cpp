@@ -163,7 +163,7 @@ TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
       gathered[std::size_t(k)] =
           double(FinalGather(tracer, lights, lookup, {.rays = 20000}).gather(from, {0, 1, 0}, counts).irradiance.g);
     }
-    const double weight = double(Bsdf(coated).arrival_weight(c));
+    const double weight = double(Bsdf(coated).arrival_weight(Vec3{0, 0, float(c)}));
     EXPECT_GT(std::abs(weight - 1), 0.03);
     EXPECT_NEAR(gathered[1] / gathered[0], weight, 0.02 * weight) << c;
   }

@@ -82,7 +82,7 @@ TEST(Glass, ShareOfTransmissionLeavesTheRestToTheMatteLobe) {
   material.specular = 0;
   const Bsdf bsdf(material);
   const Vec3 wo{0, 0, 1};
-  EXPECT_NEAR(bsdf.diffuse_reflectance(1).g, 0.25f, 1e-6f);
+  EXPECT_NEAR(bsdf.diffuse_reflectance(Vec3{0, 0, 1}).g, 0.25f, 1e-6f);
   double matte = 0;
   constexpr int kSamples = 1000;
   for (int i = 0; i < kSamples; ++i) {

@@ -418,7 +418,7 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
     for (const IrradiancePoint& point : points) {
       if (point.normal.y < 0) continue;
       const float d2 = length2(Vec3{0, 0.1f, 0} - point.position), c = 0.1f / std::sqrt(d2);
-      const float expected = c / d2 * Bsdf(material).arrival_weight(c);
+      const float expected = c / d2 * Bsdf(material).arrival_weight(Vec3{0, 0, c});
       EXPECT_NEAR(point.direct.g, expected, 1e-4f * expected);
     }
   }

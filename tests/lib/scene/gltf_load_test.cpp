@@ -397,6 +397,41 @@ TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
   EXPECT_EQ(scene.materials[1], Material{});
 }
 
+TEST(GltfLoad, LayersAreReadWithTheirTextures) {
+  GltfMaker maker;
+  const char* pixel =
+      "data:image/"
+      "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+  maker.json["images"] = {{{"uri", pixel}}};
+  maker.json["textures"] = {{{"source", 0}}};
+  const Json texture = {{"index", 0}};
+  maker.add_material(
+      {{"extensions",
+        {{"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 0.5},
+           {"clearcoatRoughnessFactor", 0.25},
+           {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}}}}},
+         {"KHR_materials_sheen",
+          {{"sheenColorFactor", {0.25, 0.5, 1}}, {"sheenRoughnessFactor", 0.75}, {"sheenRoughnessTexture", texture}}},
+         {"KHR_materials_specular", {{"specularTexture", texture}, {"specularColorTexture", texture}}},
+         {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}, {"anisotropyRotation", -2}}}}}});
+  maker.add_node({{"mesh", maker.add_square(0)}});
+  const Scene scene = maker.load();
+  EXPECT_TRUE(scene.warnings.empty());
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.clearcoat, 0.5f);
+  EXPECT_EQ(m.clearcoat_roughness, 0.25f);
+  EXPECT_EQ(m.sheen_color, (Rgb{0.25f, 0.5f, 1}));
+  EXPECT_EQ(m.sheen_roughness, 0.75f);
+  EXPECT_EQ(m.anisotropy, 0.5f);
+  EXPECT_EQ(m.anisotropy_rotation, -2);
+  ASSERT_TRUE(m.textures.has_value());
+  EXPECT_TRUE(m.textures->clearcoat_normal && m.textures->sheen_roughness && m.textures->specular &&
+              m.textures->specular_color && m.textures->grain);
+  EXPECT_FALSE(m.textures->clearcoat || m.textures->sheen_color || m.textures->anisotropy);
+  EXPECT_EQ(m.textures->clearcoat_normal_scale, 0.5f);
+}
+
 TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
   GltfMaker maker;
   maker.add_material({{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});

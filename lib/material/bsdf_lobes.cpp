@@ -1,0 +1,99 @@
+// lib/material/bsdf_lobes.cpp -- makes the lobes of a Bsdf from a material.
+#include <cmath>
+
+#include "lib/material/bsdf.h"
+
+namespace tempolux {
+namespace {
+
+/// Reflectance [1] at normal incidence of an interface of relative index `ior`.
+float normal_reflectance(float ior) {
+  const float r = (ior - 1) / (ior + 1);
+  return r * r;
+}
+
+/// F0 [1] of a dielectric in glTF: normal_reflectance(ior) times KHR_materials_specular's colour, at most 1, times its
+/// factor.
+Rgb dielectric_f0(const MaterialValues& m) {
+  const float f = normal_reflectance(m.ior);
+  return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
+             std::min(1.0f, f * m.specular_color.b)} *
+         m.specular;
+}
+
+}  // namespace
+
+// Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
+Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries) {
+  if (material.unlit) return;  // scatters nothing
+  const float metallic = material.metallic;
+  if (material.transmission * (1 - metallic) > 0) {
+    glass_.emplace(material, front);
+    rest_ = 1 - glass_->share();
+    if (!glass_->is_delta()) ++spread_;
+    if (!(rest_ > 0)) return;
+  }
+  has_lambert_ = metallic < 1;
+  const Rgb sheen = material.sheen_color;
+  if (material.clearcoat + sheen.r + sheen.g + sheen.b > 0) [[unlikely]]
+    add_coat(material, frame, carries);
+  // specular = metallic = 0: matte, and F0 is 0 as well
+  if (const float f90 = material.specular * (1 - metallic) + metallic; f90 > 0) {
+    const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
+    if (material.anisotropy > 0) [[unlikely]]
+      add_reflection(material, fresnel, frame);
+    else if (material.roughness < kMirrorRoughness) add<Mirror>(fresnel);
+    else add<Gloss>(fresnel, RoundGgx(material.roughness * material.roughness), rest_);
+  }
+  lambert_.add(material.base_color * (1 - metallic));
+  diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
+}
+
+// Not inlined: materials without these lobes do not pay for the registers.
+/// Adds the clearcoat, which is the uppermost lobe, and the sheen. KHR_materials_clearcoat gives the coat the
+/// index 1.5.
+[[gnu::noinline]] void Bsdf::add_coat(const MaterialValues& material, const Frame* frame, Carries carries) {
+  const Schlick fresnel{Rgb(normal_reflectance(1.5f) * material.clearcoat), material.clearcoat};
+  const float roughness = material.clearcoat_roughness;
+  const Mirror mirror(fresnel);
+  const Gloss gloss(fresnel, RoundGgx(roughness * roughness), rest_);
+  directed_ = frame && material.clearcoat > 0 && length2(material.axes.coat_normal) > 0;
+  if (directed_) {
+    const Vec3 axis = frame->to_local(material.axes.coat_normal), normal = axis.z < 0 ? -axis : axis;
+    if (roughness < kMirrorRoughness) add<Coat<Mirror>>(mirror, normal, carries);
+    else add<Coat<Gloss>>(gloss, normal, carries);
+  } else if (material.clearcoat > 0) {
+    if (roughness < kMirrorRoughness) add<Mirror>(mirror);
+    else add<Gloss>(gloss);
+  }
+  if (max_component(material.sheen_color) > 0) add<Sheen>(material.sheen_color, material.sheen_roughness, rest_);
+}
+
+/// Adds the reflection of a material with anisotropy. Without a direction of the grain it is round.
+[[gnu::noinline]] void Bsdf::add_reflection(const MaterialValues& material, const Schlick& fresnel,
+                                            const Frame* frame) {
+  const float alpha_b = material.roughness * material.roughness;
+  const float alpha_t = alpha_b + (1 - alpha_b) * material.anisotropy * material.anisotropy;
+  if (frame && length2(material.axes.grain) > 0 && alpha_t >= kMirrorRoughness * kMirrorRoughness) {
+    directed_ = true;
+    add<AnisotropicGloss>(fresnel, AnisotropicGgx(alpha_t, alpha_b, frame->to_local(material.axes.grain)), rest_);
+  } else if (material.roughness < kMirrorRoughness) {
+    add<Mirror>(fresnel);
+  } else {
+    add<Gloss>(fresnel, RoundGgx(alpha_b), rest_);
+  }
+}
+
+/// Adds a lobe of event S below the others.
+template <class AnyLobe, class... Parameters>
+void Bsdf::add(const Parameters&... parameters) {
+  if (!lit_) return;
+  Layer& layer = stack_[lobes_++];
+  const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
+  if (!AnyLobe::kDelta) ++spread_;
+  const float rest = 1 - lobe.mean_albedo();
+  if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
+  else lit_ = false;
+}
+
+}  // namespace tempolux
