@@ -23,11 +23,11 @@ float let_through(const LobeAlbedo& albedo) { return std::max(0.0f, 1 - max_comp
 }  // namespace
 
 // Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
-Bsdf::Bsdf(const MaterialValues& material, bool front) {
+Bsdf::Bsdf(const MaterialValues& material, bool front, float plate) {
   if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
   if (material.transmission * (1 - metallic) > 0) {
-    glass_.emplace(material, front);
+    glass_.emplace(material, front, plate);
     rest_ = 1 - glass_->share();
     if (!glass_->is_delta()) ++spread_;
     if (!(rest_ > 0)) return;

@@ -49,8 +49,8 @@ class Bsdf {
   static constexpr int kMostLobes = 6;  ///< glass, Lambert and those of the stack
 
   /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
-  /// which is outside a solid of glass. An unlit material scatters nothing.
-  explicit Bsdf(const MaterialValues& material, bool front = true);
+  /// which is outside a solid of glass. An unlit material scatters nothing. plate [m]: SurfacePoint::plate.
+  explicit Bsdf(const MaterialValues& material, bool front = true, float plate = 0);
 
   /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
   /// too.
@@ -66,7 +66,8 @@ class Bsdf {
   /// Reflectance rho of the Lambert lobe, without coupling. [1]
   Rgb diffuse_albedo() const { return lambert_.rho(); }
   /// Share of light [1] that goes straight through a smooth thin wall (a pane): transmission (1 - F(cos_o)) base_color.
-  /// sample() draws this passage, too. Black for other materials, and for cos_o <= 0.
+  /// At a plate, the share at this side (DielectricLobe). sample() draws this passage, too. Black for other materials,
+  /// and for cos_o <= 0.
   Rgb passed_straight(float cos_o) const { return glass_ && cos_o > 0 ? glass_->passed_straight(cos_o) : Rgb(0.0f); }
   /// c(w) of the head of this class [1]; 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
@@ -129,7 +130,9 @@ class Bsdf {
   float gloss_density(Vec3 wi, const Direction& wo) const;
   /// True if the lobes can be sampled separately: a Lambert lobe under a reflection, or the reflection and the
   /// transmission of smooth glass and nothing else.
-  bool forks() const { return glass_ ? glass_->share() == 1 && glass_->is_delta() : has_diffuse() && lobes_ > 0; }
+  bool forks() const {
+    return glass_ ? glass_->share() == 1 && glass_->is_delta() && glass_->reflects() : has_diffuse() && lobes_ > 0;
+  }
   /// If forks(): sample() draws the Lambert lobe, or the reflection of glass, for u_lobe below this probability, else
   /// the other lobe. wo is above the surface.
   float fork_probability(const Direction& wo) const;
