@@ -12,11 +12,11 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLargestTilt = 5e-4;    ///< rad: mean deviation of a face's normals
-constexpr double kLargestRim = 0.05;     ///< share of the rim in the area
-constexpr double kSameThickness = 0.05;  ///< unevenness of a face over the thickness
-constexpr double kShadingTilt = 0.01;    ///< of shading normals, which may be stored with 8 bits
-constexpr double kFaceCosine = 0.99;     ///< triangles with a smaller cosine to the faces' normal belong to the rim
+constexpr double kLargestTilt = 5e-4;    ///< rad: mean deviation of a face's normals (the head of find_plates)
+constexpr double kLargestRim = 0.05;     ///< share of the rim in the area: straight rays are wrong at the rim alone
+constexpr double kSameThickness = 0.05;  ///< unevenness of a face over the thickness, on which only absorption depends
+constexpr double kShadingTilt = 0.01;    ///< of shading normals; normals of 8 bits err by half of it
+constexpr double kFaceCosine = 0.99;     ///< tells faces from the rim; kLargestTilt then decides
 
 /// Index of the first vertex at the same place, for each vertex. Exporters split the vertices of sharp edges.
 std::vector<std::uint32_t> welded(const Surface& surface) {
