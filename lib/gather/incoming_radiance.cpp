@@ -38,7 +38,7 @@ struct IncomingRadiance::Met {
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
   float leg = INFINITY;          ///< m: length of the path's last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
-  std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures
+  std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures, or of a plate
 
   // follow() has an array of hits. Without this constructor the array would be cleared, which
   // takes 2 % of the time of records.
@@ -108,11 +108,11 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
 inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
-  if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
+  if (tracer_.frame().materials[met.hit.material].textures || met.hit.plate > 0) [[unlikely]] {
     const SurfaceMaterial material(tracer_.frame(), met.hit);
     met.bsdf = material.values().axes.any()
                    ? &met.textured.emplace(material, cosine > 0, SeenSide(met.hit, wo).frame)
-                   : &met.textured.emplace(material, cosine > 0);
+                   : &met.textured.emplace(material, cosine > 0, met.hit.plate);
   }
   met.wo = wo;
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;

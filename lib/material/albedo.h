@@ -11,11 +11,6 @@ struct AlbedoPair {
   float a = 0, b = 0;
 };
 
-/// Surfaces of a smaller roughness are delta mirrors or smooth glass. At this roughness GGX has alpha = 4e-4, so
-/// reflected directions spread by about 2 alpha = 8e-4 rad: a pixel of a picture of 1080 lines, whose height is 0.8
-/// rad.
-inline constexpr float kMirrorRoughness = 0.02f;
-
 namespace albedo_table {
 inline constexpr int kRows = 28, kColumns = 48;
 inline constexpr double kMinAlpha = 0.0004;  ///< kMirrorRoughness^2

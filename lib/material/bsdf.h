@@ -60,12 +60,14 @@ class Bsdf {
   static constexpr int kMostLobes = 6;  ///< glass, Lambert and those of the stack
 
   /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
-  /// which is outside a solid of glass. An unlit material scatters nothing.
-  explicit Bsdf(const MaterialValues& material, bool front = true) : Bsdf(material, front, nullptr) {}
+  /// which is outside a solid of glass. An unlit material scatters nothing. plate [m]: SurfacePoint::plate.
+  explicit Bsdf(const MaterialValues& material, bool front = true, float plate = 0)
+      : Bsdf(material, front, nullptr, Carries::radiance, plate) {}
   /// The same, for a material with axes (SurfaceAxes). frame: the local frame, whose z axis is the shading normal on
   /// the side of wo. carries: what the path carries; Carries::flux if wo leads to the light.
-  Bsdf(const MaterialValues& material, bool front, const Frame& frame, Carries carries = Carries::radiance)
-      : Bsdf(material, front, &frame, carries) {}
+  Bsdf(const MaterialValues& material, bool front, const Frame& frame, Carries carries = Carries::radiance,
+       float plate = 0)
+      : Bsdf(material, front, &frame, carries, plate) {}
 
   /// The same scattering in another local frame.
   Bsdf in_frame(const Frame& from, const Frame& to) const;
@@ -84,7 +86,8 @@ class Bsdf {
   /// Reflectance rho of the Lambert lobe, without coupling. [1]
   Rgb diffuse_albedo() const { return lambert_.rho(); }
   /// Share of light [1] that goes straight through a smooth thin wall (a pane): transmission (1 - F(cos_o)) base_color.
-  /// sample() draws this passage, too. Black for other materials, and for cos_o <= 0.
+  /// At a plate, the share at this side (DielectricLobe). sample() draws this passage, too. Black for other materials,
+  /// and for cos_o <= 0.
   Rgb passed_straight(float cos_o) const { return glass_ && cos_o > 0 ? glass_->passed_straight(cos_o) : Rgb(0.0f); }
   /// c(w) of the head of this class [1]; 1 for a matte material; w.z > 0.
   float diffuse_coupling(Vec3 w) const;
@@ -151,7 +154,9 @@ class Bsdf {
   float gloss_density(Vec3 wi, const Direction& wo) const;
   /// True if the lobes can be sampled separately: a Lambert lobe under a reflection, or the reflection and the
   /// transmission of smooth glass and nothing else.
-  bool forks() const { return glass_ ? glass_->share() == 1 && glass_->is_delta() : has_diffuse() && lobes_ > 0; }
+  bool forks() const {
+    return glass_ ? glass_->share() == 1 && glass_->is_delta() && glass_->reflects() : has_diffuse() && lobes_ > 0;
+  }
   /// If forks(): sample() draws the Lambert lobe, or the reflection of glass, for u_lobe below this probability, else
   /// the other lobe. wo is above the surface.
   float fork_probability(const Direction& wo) const;
@@ -164,7 +169,7 @@ class Bsdf {
     std::variant<std::monostate, Mirror, Gloss, AnisotropicGloss, Sheen, Coat<Mirror>, Coat<Gloss>> lobe;
   };
 
-  Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries = Carries::radiance);
+  Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate);
   template <class AnyLobe, class... Parameters>
   void add(const Parameters&... parameters);
   void add_coat(const MaterialValues& material, const Frame* frame, Carries carries);

@@ -24,11 +24,11 @@ Rgb dielectric_f0(const MaterialValues& m) {
 }  // namespace
 
 // Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
-Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries) {
+Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate) {
   if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
   if (material.transmission * (1 - metallic) > 0) {
-    glass_.emplace(material, front);
+    glass_.emplace(material, front, plate);
     rest_ = 1 - glass_->share();
     if (!glass_->is_delta()) ++spread_;
     if (!(rest_ > 0)) return;

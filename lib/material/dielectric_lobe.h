@@ -13,16 +13,25 @@ namespace tempolux {
 /// exact Fresnel equations and transmits the remaining light, tinted by base_color at each boundary. Light is refracted
 /// at a solid (index ior inside) and goes straight through a thin wall. The boundary is smooth below kMirrorRoughness,
 /// else rough_glass.h describes it.
+///
+/// A plate (lib/trace/plates.h) is passed straight. Its outer side reflects and transmits what the whole plate does,
+///     R = F + tint^2 (1 - F)^2 F A^2 / (1 - F^2 A^2),    T = tint (1 - F)^2 A / (1 - F^2 A^2),
+/// where F is the Fresnel term at a face, the same at both, and A the transmittance of the way from face to face,
+/// thickness / cos_t. These are the sums over all reflections between the faces [Born & Wolf, without interference].
+/// The side that a ray meets from inside passes all light, tinted.
 class DielectricLobe {
  public:
-  /// front: wo is outside of a solid.
-  DielectricLobe(const MaterialValues& material, bool front);
+  /// front: wo is outside of a solid. plate [m]: thickness of the plate, 0 for other glass.
+  DielectricLobe(const MaterialValues& material, bool front, float plate = 0);
 
   float share() const { return share_; }
   bool is_delta() const { return !rough_; }
   float light_share_behind() const { return light_share_behind_; }  ///< Bsdf::light_share_behind()
-  /// The share [1] of light that a smooth boundary reflects towards cos_o > 0.
+  /// The share [1] of light that a smooth boundary reflects towards cos_o > 0; of a plate, the probability with which
+  /// sample() reflects.
   float reflectance(float cos_o) const;
+  /// True if a smooth boundary reflects and transmits. The inner side of a plate only transmits.
+  bool reflects() const { return !plate_ || plate_->outer; }
   /// Bsdf::passed_straight() for cos_o > 0.
   Rgb passed_straight(float cos_o) const;
 
@@ -36,12 +45,24 @@ class DielectricLobe {
   void sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const;
 
  private:
+  struct Plate {
+    bool outer;  ///< the lobe is that of the outer side
+    float ior;
+    Rgb across;  ///< transmittance of the glass straight across
+  };
+  struct Shares {
+    Rgb reflected, passed;
+  };
+  Shares plate_shares(float cos_o) const;
+  void sample_plate(Vec3 wo, float u_lobe, LobeSample& s) const;
+
   float share_;
   Rgb tint_;
   float eta_reflected_;  ///< for the Fresnel term: index on wo's side / index on the other side
   float eta_;            ///< for refraction: the same quotient, but 1 for a thin wall
   float light_share_behind_ = 0;
-  bool pane_;                        ///< the wall is thin and smooth
+  bool pane_;  ///< the wall is thin and smooth, or of a plate
+  std::optional<Plate> plate_;
   std::optional<RoughGlass> rough_;  ///< empty: the boundary is smooth
 };
 

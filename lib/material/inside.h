@@ -70,6 +70,11 @@ class Inside {
       enter(material);  // reflected inside the solid in which the path started
     }
   }
+  /// Forgets the solid if the path is inside it.
+  void forget(std::uint32_t material) {
+    for (int i = count_; i-- > 0;)
+      if (within_[i] == material) return leave(material);
+  }
 
  private:
   static constexpr int kDeepest = 4;

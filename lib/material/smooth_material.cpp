@@ -19,12 +19,15 @@ float sharpest(const MaterialValues& m) {
 
 }  // namespace
 
-std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes) {
+std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes,
+                                    const std::function<bool(std::uint32_t)>& plates) {
   std::uint32_t first = kNone;
-  for (const Surface& surface : frame.surfaces) {
+  for (std::uint32_t s = 0; s < frame.surfaces.size(); ++s) {
+    const Surface& surface = frame.surfaces[s];
     const Material& material = frame.materials[surface.material];
     if (surface.material >= first || material.unlit || !surface.primitive || surface.primitive->triangles.empty())
       continue;
+    if (plates && plates(s)) continue;
     const Bsdf bsdf(material);
     if (!panes && max_component(bsdf.passed_straight(1)) > 0) continue;
     if (bsdf.has_specular() && (bsdf.specular_is_delta() || sharpest(material) < kSharpRoughness))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "lib/scene/at_frame.h"
 
@@ -12,6 +13,8 @@ namespace tempolux {
 /// if there is none. Textures are ignored, so a material that they make smooth in parts may be missed. panes: false
 /// leaves out smooth thin walls. Light goes straight through them, so paths find what they let through, but not what
 /// they reflect.
-std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes = true);
+/// `plates`: surfaces that are left out as well, by number; light goes straight through them, too. Empty: none.
+std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes = true,
+                                    const std::function<bool(std::uint32_t)>& plates = {});
 
 }  // namespace tempolux

@@ -123,7 +123,7 @@ struct Arrival {
 
 namespace {
 
-/// A surface whose material has textures or alpha. The constructor applies the normal map to the point.
+/// A surface whose material has textures or alpha, or which bounds a plate of glass. The constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
@@ -133,7 +133,8 @@ struct Textured {
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
         material(frame, point),
-        bsdf(material, dot(point.normal_geometric, travel) < 0, Arrival(point, travel).frame, Carries::flux),
+        bsdf(material, dot(point.normal_geometric, travel) < 0, Arrival(point, travel).frame, Carries::flux,
+             point.plate),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
@@ -424,7 +425,7 @@ struct PhotonTracer::Meeting : Arrival {
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
                            PhotonBatch& batch) const {
   const Vec3 travel = path.ray.direction;
-  if (varies_[point.material]) [[unlikely]] {
+  if (varies_[point.material] || point.plate > 0) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, travel);
     return scatter_at(path, {{point, travel}, point, distance, textured.bsdf, textured.coverage, textured.smooth}, draw,
                       batch);
@@ -523,7 +524,7 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
 bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
   const SurfacePoint& point = at.point;
   const bool front = dot(point.normal_geometric, at.wi) > 0;
-  const bool solid = solid_[point.material];
+  const bool solid = solid_[point.material] && !(point.plate > 0);
   Rgb flux = path.flux;
   if (path.inside.any() || (solid && !front)) {
     flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, at.distance);

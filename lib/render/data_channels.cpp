@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
 #include "lib/scene/same_surfaces.h"
+#include "lib/trace/triangle_hit.h"
 
 namespace tempolux {
 namespace {
@@ -87,6 +91,37 @@ struct DataPlanes {
   }
 };
 
+constexpr int kAcross = 4;  ///< places along each side of a pixel: lines as narrow as a quarter of it are averaged
+
+/// Mean reflectance of the Lambert lobe over the part of a pixel that lies on the triangle at its centre: at kAcross^2
+/// places, where rays through the pixel meet the triangle's plane (the footprint of ray differentials [Igehy 1999]).
+/// The samples of a pixel see this mean. With the value at the centre alone, the filter divides their light by the
+/// colour of a line that is narrower than the pixel, and multiplies the filtered light by it: lines become dots.
+/// `centre`: raster position; `hit`: what its ray meets; `point`: the surface there. `at_centre`: reflectance there.
+Rgb albedo_in_pixel(const SceneFrame& frame, const CameraView& view, Vec2 centre, const Hit& hit,
+                    const SurfacePoint& point, Rgb at_centre) {
+  const std::optional<MaterialTextures>& textures = frame.materials[point.material].textures;
+  if (!textures || !(textures->base_color || textures->metallic_roughness)) return at_centre;
+  const Surface& surface = frame.surfaces[hit.surface];
+  const auto& corner = surface.primitive->triangles[hit.triangle];
+  const Vec3 a = surface.position(corner[0]), b = surface.position(corner[1]), c = surface.position(corner[2]);
+  const RayCone cone = view.cone();
+  Rgb sum(0.0f);
+  int count = 0;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const Vec2 aside{(float(i % kAcross) + 0.5f) / kAcross - 0.5f, (float(i / kAcross) + 0.5f) / kAcross - 0.5f};
+    const Ray ray = view.pinhole({centre.x + aside.x, centre.y + aside.y});
+    const TriangleHit met = meet_plane(ray.origin, ray.direction, a, b, c);
+    if (!(met.t > 0) || met.outside() || !(met.t < INFINITY)) continue;
+    SurfacePoint there = point;
+    there.u = met.u, there.v = met.v;
+    const SurfaceMaterial material(frame, there, (cone.width + cone.spread * met.t) / kAcross);
+    sum += Bsdf(material).diffuse_albedo();
+    ++count;
+  }
+  return count > 0 ? sum * (1 / float(count)) : at_centre;
+}
+
 }  // namespace
 
 void check_channels(const std::vector<std::string>& channels) {
@@ -122,7 +157,7 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
       planes.set_surface(i, point, rays.rays[k].direction, scene.frame().origin);
       if (planes.z) planes.z[i] = float(view.depth(point.position));
       if (planes.albedo[0]) {
-        const Rgb rho = Bsdf(material).diffuse_albedo();
+        const Rgb rho = albedo_in_pixel(scene.frame(), view, centres[k], hit, point, Bsdf(material).diffuse_albedo());
         set(planes.albedo, i, {rho.r, rho.g, rho.b});
       }
       if (motion) {

@@ -1,5 +1,7 @@
 #include "lib/render/path_tracer.h"
 
+#include <utility>
+
 #include "lib/core/sampling.h"
 #include "lib/material/inside.h"
 #include "lib/photon/photon_path.h"
@@ -34,6 +36,10 @@ struct PathState {
   bool matte = false;        ///< there was an event D; the fields below concern the last one
   LightKinds known{};        ///< light at its place that was added; after `bright` the next Lambert lobe adds the rest
   bool specular = false;     ///< events S followed
+  /// True until the path has left a surface or a medium where lights are sampled. Until then plates of glass refract
+  /// the path; afterwards it passes them straight, as light samples do.
+  bool refracted = true;
+  std::uint32_t plate = kNone;  ///< material of the plate that the path has entered while it was refracted
   /// Distance [m] after which a ray from a Lambert lobe has spread as far as this path. The path's length since the
   /// last event D, if no glossy event widened the path; 0 if it has met only smooth mirrors and glass.
   float distance = 0;
@@ -54,6 +60,7 @@ struct Vertex {
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
+  bool plate = false;         ///< the surface bounds a plate that refracts the path
   float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
 
   /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection and
@@ -105,7 +112,7 @@ class EyeTracer {
   bool survives(PathState& state, float most) const;
   /// Sets the state after an event D.
   static void begin_matte(LightKinds known, PathState& state) {
-    state.matte = true, state.specular = false, state.known = known;
+    state.matte = true, state.specular = false, state.refracted = false, state.known = known;
     state.distance = 0, state.spread = 1;
   }
   void go_on(const Ray& ray, PathState& state) const;
@@ -178,9 +185,11 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
     begin_matte(at.known, state);
   } else {
     state.specular = true;
+    state.refracted &= next.delta;
     if (!next.delta) state.widen(x.gloss_density(next.wi));
   }
   event.pass(x.surface, at.material, dot(x.surface.normal_geometric, state.ray.direction) < 0, state.inside);
+  if (at.plate) state.plate = x.surface.material;
   if (!survives(state, kLargestPhotonSurvival)) return false;
 
   LastScatter& last = state.last;
@@ -331,8 +340,9 @@ void EyeTracer::add_met(Rgb light, const PathState& state) const {
 void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   const SceneFrame& frame = scene_.frame();
   const Vec3 wo = -state.ray.direction;
-  const bool front = dot(point.normal_geometric, wo) > 0;
-  if (state.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
+  const bool front = dot(point.normal_geometric, wo) > 0,
+             solid = !(point.plate > 0) && is_solid_glass(frame.materials[point.material]);
+  if (state.inside.any() || (!front && solid))
     state.throughput *= state.inside.transmittance_to(frame.materials, point.material, front, state.hit.t);
   state.cone.advance(state.hit.t);
   state.distance += state.spread * state.hit.t;
@@ -441,11 +451,12 @@ bool EyeTracer::step(PathState& state) const {
   }
   parts_.own.coverage = 1;
   SurfacePoint point = scene_.tracer.surface_point(state.hit);
+  const bool refracting_plate = state.refracted && point.plate > 0;
+  if (refracting_plate) point.plate = 0;
   arrive(point, state);
   // If true, only light by events S and light behind panes has not been added yet.
   const bool only_specular = state.known.has(LightKind::indirect);
-  if (only_specular && state.known.has(LightKind::caustic) && !may_be_pane(frame.materials[point.material]))
-    return false;
+  if (only_specular && state.known.has(LightKind::caustic) && !scene_.tracer.may_pass(state.hit)) return false;
 
   const Vec3 smooth = point.normal;
   const SurfaceMaterial material(frame, point, state.cone.width);
@@ -455,6 +466,10 @@ bool EyeTracer::step(PathState& state) const {
   }
   const ShadingPoint x(point, -state.ray.direction, material);
   Vertex at{x, material};
+  at.plate = refracting_plate;
+  // Something inside a plate, such as a frame: light reaches it straight, and the plate does not absorb on its way.
+  if (state.plate != kNone && !(x.bsdf.specular_is_delta() && !x.bsdf.has_diffuse())) [[unlikely]]
+    state.inside.forget(std::exchange(state.plate, kNone));
   if (only_specular) at.known = {LightKind::direct, LightKind::caustic, LightKind::indirect, LightKind::lamps};
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())

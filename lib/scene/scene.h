@@ -32,6 +32,10 @@ struct SurfaceAxes {
   bool any() const { return coat_normal != Vec3{} || grain != Vec3{}; }
   bool operator==(const SurfaceAxes&) const = default;
 };
+/// Surfaces of a smaller roughness are delta mirrors or smooth glass. At this roughness GGX has alpha = 4e-4, so
+/// reflected directions spread by about 2 alpha = 8e-4 rad: a pixel of a picture of 1080 lines, whose height is 0.8
+/// rad.
+inline constexpr float kMirrorRoughness = 0.02f;
 
 /// Properties of a material at one point: metallic-roughness of glTF 2.0 with the extensions that docs/scene-files.md
 /// lists.

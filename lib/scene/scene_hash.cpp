@@ -7,6 +7,7 @@
 #include "lib/image/texture_images.h"
 #include "lib/scene/camera_properties.h"
 #include "lib/scene/material_properties.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 namespace {
@@ -156,6 +157,8 @@ std::string materials_hash(const Scene& scene, std::span<const Material> materia
   for (const Material* material : ordered) {
     if (!material) break;
     add_material(hasher, scene, *material);
+    // Files of earlier versions hold light behind plates as caustic light.
+    if (may_be_plate(*material)) hasher.add(std::string_view("plates"));
   }
   return hasher.hex();
 }

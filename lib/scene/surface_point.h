@@ -17,6 +17,9 @@ struct SurfacePoint {
   float offset = 0;  ///< m; rays that leave start this far above the side on which they leave
   std::uint32_t surface = kNone, triangle = 0, object = 0, material = 0;
   float u = 0, v = 0;  ///< barycentric coordinates of corners 1 and 2
+  /// m: thickness of the plate of glass that the triangle bounds (lib/trace/plates.h). Light passes a plate straight;
+  /// 0: the triangle bounds none, or the plate shall refract like other solids.
+  float plate = 0;
 };
 
 }  // namespace tempolux

@@ -90,6 +90,14 @@ bool lets_rays_pass(const Material& material);
 inline bool may_be_pane(const Material& material) {
   return material.transmission > 0 && material.thin_walled && !material.unlit;
 }
+/// True if solids of the material may be plates (lib/trace/plates.h): smooth, clear or coloured glass that transmits
+/// all light that it does not reflect, without a normal map.
+inline bool may_be_plate(const Material& m) {
+  const bool smooth = m.roughness < kMirrorRoughness && m.metallic == 0 && !m.unlit && !m.emissive(),
+             varies = m.textures && (m.textures->normal || m.textures->transmission);
+  return m.transmission == 1 && !m.thin_walled && m.ior >= 1 && smooth && !varies &&
+         m.alpha_mode == Material::Alpha::opaque;
+}
 /// How the texture of the base colour is decoded.
 TextureTransfer base_color_transfer(const Material& material);
 

@@ -58,6 +58,8 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   point.triangle = hit.triangle;
   point.object = surface.object;
   point.material = surface.material;
+  if (surface.plates) [[unlikely]]
+    point.plate = surface.plates[hit.triangle];
   point.u = u;
   point.v = v;
   return point;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <algorithm>
 #include <string>
 
 #include "formats/error.h"
@@ -329,9 +330,22 @@ Tracer::Tracer(const SceneFrame& frame, StaticTree& static_scene) : impl_(std::m
   build(frame, static_scene);
 }
 
+namespace {
+
+/// Surfaces whose material allows plates.
+std::vector<std::uint32_t> glass_of(const SceneFrame& frame, std::size_t first, std::size_t last) {
+  std::vector<std::uint32_t> glass;
+  for (std::size_t s = first; s < last; ++s)
+    if (may_be_plate(frame.materials[frame.surfaces[s].material])) glass.push_back(std::uint32_t(s));
+  return glass;
+}
+
+}  // namespace
+
 void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
   impl_->frame = &frame;
   if (!static_scene.kept_ || !static_scene.kept_->holds_for(frame)) {
+    static_scene.plates_.reset();
     static_scene.kept_.reset();  // freed before the next tree is built, so that memory need not hold both
     impl_->forest = std::make_shared<Forest>();
     const auto made = std::make_shared<StaticTree::Kept>();
@@ -343,18 +357,39 @@ void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
   impl_->static_scene = static_scene.kept_;
   impl_->forest = impl_->static_scene->forest;
   impl_->fixed = impl_->static_scene->tree;
+  impl_->surfaces.reserve(frame.surfaces.size());
+  impl_->add_surfaces(0, frame.static_count);
+  // Before there is a moving tree: what moves must not decide whether a static solid is a plate.
+  const std::vector<std::uint32_t> glass = glass_of(frame, 0, frame.static_count);
+  if (!static_scene.plates_ || static_scene.plates_->searched != glass)
+    static_scene.plates_ =
+        std::make_shared<const StaticTree::Plates>(StaticTree::Plates{glass, free_plates(*this, glass)});
+  impl_->static_plates = static_scene.plates_;
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
-  for (const Surface& surface : frame.surfaces) {
-    const Material& material = frame.materials[surface.material];
-    impl_->surfaces.emplace_back(surface);
-    impl_->panes |= may_be_pane(material);
+  impl_->add_surfaces(frame.static_count, frame.surfaces.size());
+  impl_->moving_plates = free_plates(*this, glass_of(frame, frame.static_count, frame.surfaces.size()));
+  impl_->use_plates(impl_->static_plates->found);
+  impl_->use_plates(impl_->moving_plates);
+}
+
+/// Lays out the surfaces of a tree that has been built.
+void Tracer::Impl::add_surfaces(std::size_t first, std::size_t last) {
+  for (std::size_t s = first; s < last; ++s) {
+    const Surface& surface = frame->surfaces[s];
+    const Material& material = frame->materials[surface.material];
+    surfaces.emplace_back(surface);
+    panes |= may_be_pane(material);
     if (lets_rays_pass(material)) {
-      impl_->surfaces.back().passable = true;
+      surfaces.back().passable = true;
       if (material.textures && material.textures->base_color)  // decoded here, since Embree's filters must not throw
-        frame.images->pyramid(material.textures->base_color.image, base_color_transfer(material));
+        frame->images->pyramid(material.textures->base_color.image, base_color_transfer(material));
     }
-    if (surface.instanced()) impl_->surfaces.back().instance_offset = impl_->instance_offset(surface);
+    if (surface.instanced()) surfaces.back().instance_offset = instance_offset(surface);
   }
+}
+
+void Tracer::Impl::use_plates(const PlatesOfSurfaces& plates) {
+  for (const auto& [surface, thickness] : plates) surfaces[surface].plates = thickness.data(), panes = true;
 }
 
 Tracer::~Tracer() = default;
@@ -400,5 +435,16 @@ bool Tracer::occluded(const Ray& ray) const {
 std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }
 const SceneFrame& Tracer::frame() const { return *impl_->frame; }
 bool Tracer::has_panes() const { return impl_->panes; }
+
+bool Tracer::may_pass(const Hit& hit) const {
+  const SurfaceArrays& surface = impl_->surfaces[hit.surface];
+  return (surface.plates && surface.plates[hit.triangle] > 0) || may_be_pane(impl_->frame->materials[surface.material]);
+}
+
+bool Tracer::is_plate(std::uint32_t surface) const {
+  const float* const plates = impl_->surfaces[surface].plates;
+  return plates && std::all_of(plates, plates + impl_->frame->surfaces[surface].primitive->triangles.size(),
+                               [](float thickness) { return thickness > 0; });
+}
 
 }  // namespace tempolux

@@ -36,7 +36,9 @@ class StaticTree {
  private:
   friend class Tracer;
   struct Kept;
+  struct Plates;
   std::shared_ptr<const Kept> kept_;
+  std::shared_ptr<const Plates> plates_;
 };
 
 /// Finds the closest hit of a ray. There are two search trees: static surfaces, and surfaces that move in the segment;
@@ -72,8 +74,12 @@ class Tracer {
   /// Number of rays that were refused because they were not finite.
   std::uint64_t refused_ray_count() const;
   const SceneFrame& frame() const;
-  /// True if light may go straight through some surface (may_be_pane).
+  /// True if light may go straight through some surface: a pane (may_be_pane) or a plate (plates.h).
   bool has_panes() const;
+  /// True if light may go straight through the surface at a hit.
+  bool may_pass(const Hit& hit) const;
+  /// True if the whole surface consists of plates.
+  bool is_plate(std::uint32_t surface) const;
 
  private:
   struct Impl;

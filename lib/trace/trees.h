@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lib/scene/at_frame.h"
+#include "lib/trace/plates.h"
 #include "lib/trace/trace.h"
 
 // Embree's handles; trace.cpp alone includes Embree.
@@ -50,6 +51,7 @@ struct SurfaceArrays {
   std::uint32_t object, material;
   bool flipped, smooth, passable = false;  ///< passable: lets_rays_pass()
   float instance_offset = 0;
+  const float* plates = nullptr;  ///< SurfacePoint::plate of each triangle; null: no triangle bounds a plate
 
   /// Positions or normals of a triangle's corners in scene space: pointers into the surface's arrays, since copying
   /// would stall, or into `own`, to which the vertices of an instance are written.
@@ -99,6 +101,12 @@ struct Forest {
   ~Forest();
 };
 
+/// Plates of the static surfaces.
+struct StaticTree::Plates {
+  std::vector<std::uint32_t> searched;  ///< surfaces that may have plates, by their material
+  PlatesOfSurfaces found;
+};
+
 struct StaticTree::Kept {
   std::shared_ptr<Forest> forest;
   Tree tree;
@@ -116,6 +124,8 @@ struct Tracer::Impl {
   std::shared_ptr<const StaticTree::Kept> static_scene;  ///< owns `fixed`
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
+  std::shared_ptr<const StaticTree::Plates> static_plates;
+  PlatesOfSurfaces moving_plates;
   bool panes = false;
   mutable std::atomic<std::uint64_t> refused{0};
 
@@ -126,6 +136,8 @@ struct Tracer::Impl {
   /// to scene space scales the rounding errors of that space, and its translation is rounded, too.
   float instance_offset(const Surface& surface) const;
   SurfacePoint point_of(const Hit& hit) const;
+  void add_surfaces(std::size_t first, std::size_t last);
+  void use_plates(const PlatesOfSurfaces& plates);
   struct Query;
   struct NearestQuery;
   struct AnyQuery;

@@ -17,10 +17,10 @@ float media_transmittance(const Media& media, const Ray& ray, const WayBits& bit
 }
 
 Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction) {
-  if (!may_be_pane(frame.materials[point.material])) return Rgb(0.0f);
+  if (!(point.plate > 0) && !may_be_pane(frame.materials[point.material])) return Rgb(0.0f);
   const SurfaceMaterial material(frame, point);
   const Vec3 wo = -normalize(direction);
-  return Bsdf(material, dot(point.normal_geometric, wo) > 0).passed_straight(SeenSide(point, wo).wo_local.z);
+  return Bsdf(material, dot(point.normal_geometric, wo) > 0, point.plate).passed_straight(SeenSide(point, wo).wo_local.z);
 }
 
 namespace {
@@ -30,7 +30,7 @@ Rgb passed_surfaces(const Tracer& tracer, Ray ray) {
   if (!tracer.has_panes()) return Rgb(tracer.occluded(ray) ? 0.0f : 1.0f);
   Rgb passed(1.0f);
   for (Hit hit; tracer.intersect(ray, hit);) {
-    if (!may_be_pane(tracer.frame().materials[tracer.frame().surfaces[hit.surface].material])) return Rgb(0.0f);
+    if (!tracer.may_pass(hit)) return Rgb(0.0f);
     const SurfacePoint point = tracer.surface_point(hit);
     passed *= passed_straight(tracer.frame(), point, ray.direction);
     if (is_black(passed)) break;

@@ -27,11 +27,12 @@ enum Way : std::uint32_t { way_path = 0, way_shadow = 1, way_shadow_of_medium = 
 float media_transmittance(const Media& media, const Ray& ray, const WayBits& bits);
 
 /// Share of light that goes straight through a surface (Bsdf::passed_straight). `direction` is that of the ray, of any
-/// length. Black unless the surface is a pane.
+/// length. Black unless the surface is a pane or bounds a plate.
 Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction);
 
-/// Share of light that arrives along a shadow ray: media_transmittance() times passed_straight() of each pane on the
-/// way. Black if another surface is in the way. Without media and panes the result is exactly 0 or 1.
+/// Share of light that arrives along a shadow ray: media_transmittance() times passed_straight() of each pane and
+/// plate on the way. Black if another surface is in the way. Without media, panes and plates the result is exactly 0
+/// or 1.
 Rgb transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
 
 /// A collision with a medium, where the path is scattered.

@@ -18,7 +18,7 @@ struct ShadingPoint : SeenSide {
   ShadingPoint(const SurfacePoint& point, Vec3 wo, const MaterialValues& material)
       : SeenSide(point, wo),
         surface(point),
-        bsdf(material, dot(point.normal_geometric, wo) > 0, frame),
+        bsdf(material, dot(point.normal_geometric, wo) > 0, frame, Carries::radiance, point.plate),
         eye(bsdf.along(wo_local)) {}
 
   /// f_S [1/sr] of light from wi towards the eye, with the light that the lobes send to wi's image (ShadingFrame):

@@ -6,6 +6,7 @@ bool SpecularChain::meet() {
   hit_ = {};
   if (!tracer_.intersect(ray_, hit_)) return false;
   point_ = tracer_.surface_point(hit_);
+  point_.plate = 0;
   way_ += hit_.t;
   front_ = dot(point_.normal_geometric, ray_.direction) < 0;
   passed_ *= inside_.transmittance_to(tracer_.frame().materials, point_.material, front_, hit_.t);

@@ -42,6 +42,11 @@ class HandMadeScene {
   std::uint32_t add_box(Vec3 lower, Vec3 upper, const Material& material, bool moving = false) {
     return add_faces_of_box(lower, upper, material, moving, false);
   }
+  /// The same without the face at the largest x. A slab of glass with such a gap in its rim is no plate (plates.h) and
+  /// refracts light.
+  std::uint32_t add_open_box(Vec3 lower, Vec3 upper, const Material& material) {
+    return add_faces_of_box(lower, upper, material, false, false, true);
+  }
   /// Adds the six faces of a box, fronts inwards.
   void add_room(Vec3 lower, Vec3 upper, const Material& material) {
     add_faces_of_box(lower, upper, material, false, true);
@@ -111,13 +116,15 @@ class HandMadeScene {
   }
 
  private:
-  std::uint32_t add_faces_of_box(Vec3 l, Vec3 u, const Material& material, bool moving, bool inwards) {
+  std::uint32_t add_faces_of_box(Vec3 l, Vec3 u, const Material& material, bool moving, bool inwards,
+                                 bool open = false) {
     const std::vector<Vec3> p{{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z},
                               {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}};
     std::vector<std::array<std::uint32_t, 3>> faces{{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                                                     {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}};
     if (inwards)
       for (auto& [a, b, c] : faces) std::swap(b, c);
+    if (open) faces.resize(faces.size() - 2);
     return add(p, faces, material, moving);
   }
   SceneFrame frame_;

@@ -101,7 +101,7 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
 /// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp. Photons are also looked at
 ///   in mirrors and glass (SpecularHits).
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
-/// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane: photons,
+/// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane or plate: photons,
 ///   because no camera path meets a sun via a smooth surface.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
@@ -110,8 +110,9 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   const RenderScene& scene = shot.scene;
   const CameraView& view = shot.view;
   const EnvironmentLight* const environment = shot.emission.environment.get();
+  const auto is_plate = [&](std::uint32_t surface) { return scene.tracer.is_plate(surface); };
   const bool suns = scene.lights.has_suns() || (environment && environment->has_sun()),
-             hidden = suns && (first_smooth_material(scene.frame(), false) != kNone ||
+             hidden = suns && (first_smooth_material(scene.frame(), false, is_plate) != kNone ||
                                (may_hide_light(scene.frame()) && shot.hidden_light() > 0)),
              paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
              specular = photons && !options.traces_paths() && !scene.frame().media;

@@ -60,7 +60,7 @@ Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
 TEST(Caustics, SlabPassesWhatFresnelSays) {
   for (float color : {1.0f, 0.4f}) {
     HandMadeScene scene;
-    scene.add_box({-40, -0.1f, -40}, {40, 0.1f, 40}, glass(0, Rgb(color), color < 1 ? 0.2f : INFINITY));
+    scene.add_open_box({-40, -0.1f, -40}, {40, 0.1f, 40}, glass(0, Rgb(color), color < 1 ? 0.2f : INFINITY));
     const std::uint32_t floor =
         scene.add_quad({-400, -2, 400}, {400, -2, 400}, {400, -2, -400}, {-400, -2, -400}, matte(Rgb(0.0f)));
     scene.add_point_light({0, 1.1f, 0}, Rgb(1.0f));

@@ -103,7 +103,7 @@ TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
 /// T pass err by (T (1 - T) / 4096)^1/2 = .4 %; the photons' own error is measured.
 TEST(SeePhotons, TheSunIsSeenThroughASlabOfGlass) {
   test::HandMadeScene scene;
-  scene.add_box({-1, -1, 1}, {5, 5, 1.1f}, test::glass(0));
+  scene.add_open_box({-1, -1, 1}, {5, 5, 1.1f}, test::glass(0));
   scene.add_sun({0, 0, -1}, Rgb(1.0f));
   const auto [photons, indirect, rough, ways] = pilots_of(scene);
   const double transmitted = 0.96 / 1.04, expected = 0.5 / M_PI * transmitted * transmitted;

@@ -152,7 +152,7 @@ struct RidgesUnderGlass {
   }
   static SceneFrame frame_of(HandMadeScene& made, int stripes) {
     add_ridges(stripes, made);
-    made.add_box({-2, -1.2f, 0.2f}, {1, 1.2f, 0.2001f}, test::glass(0));
+    made.add_open_box({-2, -1.2f, 0.2f}, {1, 1.2f, 0.2001f}, test::glass(0));
     SceneFrame frame = made.frame();
     PlacedLight sun;
     sun.light.kind = PunctualLight::Kind::directional;
