@@ -7,7 +7,9 @@
 
 #include "lib/core/grid.h"
 #include "lib/gather/final_gather.h"
+#include "lib/pilot/spread_work.h"
 #include "lib/points/irradiance_points.h"
+#include "lib/render/photon_light.h"
 #include "lib/render/pixel_noise.h"
 
 namespace tempolux {
@@ -18,11 +20,46 @@ constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 /// irradcache-build --rays does not accept more.
 constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
+
 /// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
 /// (docs/methods/ways.md).
 constexpr double kFilterGain = 2.4;
+constexpr double kMapNeighbours = PhotonLightOptions{}.caustic_neighbours;
 
-/// Work and error of one way. map: visible caustic light comes from photons.
+/// Squared error of the caustic light that a density of photons estimates: a density by k photons errs by 1 / sqrt(k).
+double map_error(const RoughFrame& rough) {
+  double square = 0;
+  for (const CausticPart& part : rough.caustic) square += part.square;
+  return square / kMapNeighbours;
+}
+
+/// The samples of a way (AskedPicture).
+struct AskedSamples {
+  double work, count, error;
+};
+
+/// Spreads the work of a way with a map in a filtered picture.
+void spread(const RoughFrame& rough, const Order& order, const AskedSamples& samples, Way& way) {
+  const bool records = way.method == IndirectMethod::records;
+  const AskedPicture asked{.pixels = order.pixels,
+                           .sample_work = samples.work,
+                           .samples = samples.count,
+                           .sample_error = samples.error,
+                           .ray_work = records ? rough.records * rough.record_ray : 0,
+                           .ray_error = records ? rough.record_error : 0,
+                           .rays = way.rays,
+                           .photons = order.photons,
+                           .most_photons = order.most_photons,
+                           .pictures = order.pictures,
+                           .work = way.work};
+  const SpreadWork best = spread_work(rough, asked);
+  way.rays = best.rays;
+  way.photons = best.photons;
+  way.pixel_error = error_for_samples(best.samples);
+}
+
+/// Work and error of one way, with as many samples as the wish's pixel error asks for. map: visible caustic light comes
+/// from photons.
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
   const bool records = method == IndirectMethod::records;
   const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
@@ -35,11 +72,12 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (map || method != IndirectMethod::paths)
     fixed += double(order.photons) * Work::kRay * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
-  Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
-  if (rough.wanted_of > 0 && variance > rough.wanted_of)
-    way.pixel_error = nearest_on_grid(error_for_variance(variance / rough.wanted_of), 4);
+  Way way{.method = method, .map = map, .photons = order.photons};
+  way.work = fixed + order.pixels * sample * samples;
+  way.error = order.filtered ? wanted / kFilterGain : wanted;
+  const double of_samples = way.error;
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
-  if (map) way.error += rough.map_error;
+  if (map) way.error += map_error(rough);
   // A map holds caustic light, records indirect light; samples find the other layers.
   const MissedLight caustic = map ? MissedLight{} : effort.missed_caustic,
                     indirect = records ? MissedLight{} : effort.missed_indirect;
@@ -56,6 +94,10 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
     way.work += ray * way.rays;
     way.error += rough.record_error / way.rays;
   }
+  if (order.filtered && map) spread(rough, order, {sample, samples, of_samples}, way);
+  if (rough.wanted_of > 0 && variance > rough.wanted_of)
+    way.pixel_error *= error_for_variance(variance / rough.wanted_of);
+  way.pixel_error = nearest_on_grid(way.pixel_error, 4);
   return way;
 }
 
@@ -90,6 +132,7 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
       same->work += way.work;
       same->error += way.error;
       same->rays = std::max(same->rays, way.rays);
+      same->photons = std::max(same->photons, way.photons);
       same->pixel_error = std::min(same->pixel_error, way.pixel_error);
       same->measured &= way.measured;
       same->never = std::max(same->never, way.never);

@@ -17,21 +17,24 @@ inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"}
 /// The picture to be rendered. Its light is charged to it alone, even if other frames share the files.
 struct Order {
   double pixels = 0;                ///< number of pixels of the picture
-  std::uint64_t photons = 700'000;  ///< light paths of the photon map
+  std::uint64_t photons = 700'000;  ///< light paths of the photon map, at least
   bool filtered = true;             ///< lib/filter reduces the noise of samples
+  std::uint64_t most_photons = 0;   ///< light paths of the map, at most (AskedPicture)
+  double pictures = 1;              ///< number of pictures that share light paths above `photons`
 };
 
 /// A way to light, with its estimated work and error.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;        ///< visible caustic light comes from photons; else camera paths find it
-  int rays = 0;            ///< gather rays per record
-  double work = 0;         ///< shadow rays, for the whole picture
-  double error = 0;        ///< squared error, mean over the pixels, in the unit of SampleEffort
-  double pixel_error = 1;  ///< factor for the wish's pixel error with which the way's samples leave the wished error
-  bool measured = true;    ///< false: work and error are lower bounds
-  double never = 0;        ///< MissedLight::never of the layers that the way samples
-  double uncertain = 0;    ///< MissedLight::uncertain of these layers
+  bool map = false;           ///< visible caustic light comes from photons; else camera paths find it
+  int rays = 0;               ///< gather rays per record
+  double work = 0;            ///< shadow rays, for the whole picture
+  double error = 0;           ///< squared error, mean over the pixels, in the unit of SampleEffort
+  double pixel_error = 1;     ///< factor for the wish's pixel error
+  std::uint64_t photons = 0;  ///< light paths of the photon map
+  bool measured = true;       ///< false: work and error are lower bounds
+  double never = 0;           ///< MissedLight::never of the layers that the way samples
+  double uncertain = 0;       ///< MissedLight::uncertain of these layers
   double score() const { return work * error; }  ///< the least is best
 };
 
@@ -48,10 +51,14 @@ struct Way {
 /// photons and of light that photons show and paths miss. The product is least for
 ///
 ///     k = sqrt(e (fixed + P c n) / (M g (E / G + B)))
+///
+/// Work and error are those with the wish's light paths and pixel error. A filtered picture with a map then gets the
+/// numbers of spread_work(), with less work and the same seen error. Way::pixel_error also allows for the variance of
+/// ways whose samples find indirect light.
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The ways for several frames together, in the same order: each with the sums of work and error over the frames, the
-/// largest number of rays, the smallest pixel error and the largest shares of missed light.
+/// largest numbers of rays and photons, the smallest pixel error and the largest shares of missed light.
 std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames);
 
 /// Text that explains the order of `ways` (not empty): the score of each way over that of the first, and the light that

@@ -34,8 +34,6 @@ constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough r
 /// Largest number of pixels at which the need for records is tested. The test then takes a tenth of a second. In a
 /// picture with more pixels the tested pixels form a lattice.
 constexpr double kLooks = 320 * 180;
-/// Squared error of a density by k photons, over the square of the density: 1 / k.
-constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;
 
 /// Radiance of one sample [W/m^2/sr], mean of the channels, by layer. `other`: all layers but caustic and indirect.
 struct Sample {
@@ -367,7 +365,12 @@ void compare(const Picture& picture, const SeenLight& photons, const Samples& pa
   add_shown(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2, caustic);
   add_shown(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2, others);
   others.uncertain = uncertain_share(paths, picture.levels, rough.places);
-  rough.map_error = kMapError2 * caustics.square / allowed2;
+  for (std::size_t part = 0; part < caustics.light.size(); ++part) {
+    const double light2 = caustics.light[part] * caustics.light[part] / kPilotParts,
+                 allowed = picture.levels.allowed[part];
+    rough.caustic.push_back({light2 / allowed2, allowed > 0 ? light2 / (allowed * allowed) : 0,
+                             caustics.photons[part] / double(kPilotPaths)});
+  }
   if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
     caustic.never = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include <vector>
 
 #include "lib/light/aim.h"
 #include "lib/render/camera_view.h"
@@ -23,6 +24,9 @@ struct Work {
   static constexpr double kGatherRay = 4;  ///< the same, and the look-up at its end
   static constexpr double kPoint = 90;     ///< an irradiance point: density estimates and light samples
   static constexpr double kRecordLookUp = 3, kCausticLookUp = 9;
+  /// A photon of a map that a picture reads: its index, and slower look-ups of points and pixels. In furnished_day 1.7
+  /// million further photons cost each picture 4 CPU s.
+  static constexpr double kPhotonRead = 8;
 };
 
 /// Work and variance of one sample. Each variance is divided by the square of the error that its pixel may have
@@ -35,6 +39,14 @@ struct SampleEffort {
   double all = 0, without_caustic = 0;              ///< variance of all light, and of all but layer caustic
   double other = 0, other_without_caustic = 0;      ///< the same without layer indirect
   MissedLight missed_caustic{}, missed_indirect{};  ///< light of these layers that the samples miss
+};
+
+/// Caustic light in a part of the picture (pilot_part).
+struct CausticPart {
+  double square =
+      0;  ///< squared light over the square of the picture's; the sum over parts is the picture's mean square
+  double seen_square = 0;  ///< the same over the square of the error that the part may have (SampleEffort)
+  double photons = 0;      ///< number of photons of a light path that the camera sees there (SeenPhotons::photons)
 };
 
 /// Work and error of each way to light. Values that were not measured are lower bounds. If even the bounds make a way
@@ -54,9 +66,9 @@ struct RoughFrame {
   double records = 0;        ///< number of records that the picture needs
   double record_ray = 0;     ///< shadow rays of one gather ray of a record and of its continuation
   double record_error = 0;  ///< squared error of interpolated light at one gather ray per record; n rays divide it by n
-  double map_error = 0;     ///< squared error of the caustic light that a density of photons estimates
-  double photons_per_path = 0;       ///< mean number of photons that a light path leaves
-  std::uint64_t paths_of_light = 0;  ///< light paths of the photon map (photon_paths)
+  std::vector<CausticPart> caustic{};  ///< light that a density of photons estimates, by part of the picture
+  double photons_per_path = 0;         ///< mean number of photons that a light path leaves
+  std::uint64_t paths_of_light = 0;    ///< light paths of the photon map (photon_paths)
 };
 
 struct RoughOptions {

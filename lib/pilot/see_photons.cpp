@@ -82,12 +82,17 @@ std::vector<SeenFlux> all_behind(const RenderScene& scene, std::span<const std::
 /// Sums light that is seen directly (by photon) and behind mirrors and glass (by camera ray).
 SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> behind) {
   SeenPhotons pilot;
-  std::vector<double> parts(kPilotParts, 0.0), noise(kPilotParts, 0.0);
-  double squares = 0, squares_behind = 0;
+  std::vector<double> parts(kPilotParts, 0.0), noise(kPilotParts, 0.0), of_photons(kPilotParts, 0.0);
+  double squares_behind = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
-    squares += one.radiance * one.radiance;
+    of_photons[one.part] += one.radiance * one.radiance;
     parts[one.part] += one.radiance;
+  }
+  double squares = 0;
+  for (std::size_t part = 0; part < kPilotParts; ++part) {
+    squares += of_photons[part];
+    pilot.photons.push_back(of_photons[part] > 0 ? parts[part] * parts[part] / of_photons[part] : 0);
   }
   for (const SeenFlux& one : behind) {
     pilot.mean += one.radiance;
@@ -96,7 +101,10 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
   }
   for (const double part : noise) squares_behind += part * part;
   pilot.mean_error = std::sqrt(squares + squares_behind);
-  for (const double part : parts) pilot.square += part * part * kPilotParts;
+  for (const double part : parts) {
+    pilot.square += part * part * kPilotParts;
+    pilot.light.push_back(part * kPilotParts);
+  }
   return pilot;
 }
 

@@ -1,6 +1,8 @@
 // lib/pilot/see_photons.h -- estimates the caustic and indirect light that a camera sees, from photons alone.
 #pragma once
 
+#include <vector>
+
 #include "formats/photons/photons.h"
 #include "lib/density/photon_view.h"
 #include "lib/render/camera_view.h"
@@ -12,6 +14,10 @@ namespace tempolux {
 struct SeenPhotons {
   double mean = 0, mean_error = 0;  ///< mean over the picture, and its standard error
   double square = 0;                ///< mean square over the parts of the picture (pilot_part)
+  std::vector<double> light;        ///< by part: mean radiance
+  /// By part: number of photons seen directly; if their contributions r differ, (sum r)^2 / sum r^2, which is the
+  /// number of equal photons with the same relative variance.
+  std::vector<double> photons;
 };
 
 /// The two kinds of light that paths may miss.

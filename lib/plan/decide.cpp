@@ -17,6 +17,7 @@
 #include "lib/pilot/choose_split.h"
 #include "lib/pilot/hidden_light.h"
 #include "lib/pilot/photon_shares.h"
+#include "lib/pilot/pilot_photons.h"
 #include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
 
@@ -75,9 +76,11 @@ struct Look {
 
 class FramePilot {
  public:
-  /// tree: the pilots of a segment share the tree of its static scene.
-  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree)
+  /// tree: the pilots of a segment share the tree of its static scene. pictures: Order::pictures.
+  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree,
+             double pictures = 1)
       : kinds_(kinds),
+        pictures_(pictures),
         wish_(wish),
         frame_(source.at(number, true)),
         table_(source.emission(frame_.frame)),
@@ -91,8 +94,9 @@ class FramePilot {
     const auto look_of = [&](const RoughFrame& rough) {
       Look look;
       look.paths = rough.paths_of_light;
-      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.filter != 0},
-                                kinds_.find("caustic") != std::string::npos);
+      const Order order{double(wish_.width) * wish_.height, look.paths, wish_.filter != 0,
+                        wish_.filter != 0 ? std::uint64_t(kMostTimesPhotons) * wish_.photons : 0, pictures_};
+      look.ways = ways_to_light(rough, order, kinds_.find("caustic") != std::string::npos);
       return look;
     };
     RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
@@ -130,6 +134,7 @@ class FramePilot {
   }
 
   std::string kinds_;
+  double pictures_;
   const Wish& wish_;
   SceneFrame frame_;
   EmissionTable table_;
@@ -235,11 +240,13 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
   // ray each.
   const Way way =
       best_of(ways, wish, media)
-          .value_or(Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather), false,
-                        1, 0, 0});
+          .value_or(
+              Way{.method = named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather),
+                  .rays = 1});
   d.indirect = way.method;
   d.caustic_map = way.map;
   d.record_rays = way.rays;
+  if (way.map) d.photon_paths = std::max(d.photon_paths, way.photons);
   d.pixel_error = wish.pixel_error * way.pixel_error;
   if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
   d.reasons.push_back({kRecordsReason, words});
@@ -390,6 +397,18 @@ Decisions begin(const PlannedSegment& segment, bool media) {
   return d;
 }
 
+/// True if the light of the static scene may be computed once for all states of the segment.
+bool may_share_static(const PlannedSegment& segment, const Wish& wish, bool media) {
+  return segment.states().size() >= kFewestStates && !media && wish.moving != "anew";
+}
+
+/// Mean number of pictures that share the light paths of a photon map. The paths of the static scene are traced a
+/// second time to find those that movers touch.
+double pictures_of_a_map(const PlannedSegment& segment, const Wish& wish, bool media) {
+  const auto pictures = double(segment.pictures().size()), states = double(segment.states().size());
+  return std::max(1.0, may_share_static(segment, wish, media) ? pictures / 2 : pictures / states);
+}
+
 /// What pilots found in the frames `d.looked`.
 struct LookedAt {
   StaticTree tree;
@@ -397,9 +416,12 @@ struct LookedAt {
   std::vector<Look> looks;
 
   /// also: a method that must be measured, too.
-  LookedAt(const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
+  LookedAt(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
            std::optional<IndirectMethod> also) {
-    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
+    const double pictures = pictures_of_a_map(segment, wish, media);
+    const auto pilot_of = [&](int frame) {
+      return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree, pictures);
+    };
     looks = look_at({d.looked, wish, media, pilot_of, also}, middle);
   }
 };
@@ -416,6 +438,11 @@ void decide_by_looks(const PlannedSegment& segment, const Wish& wish, bool media
   join(looked.looks, wish, media, d);
   decide_together(segment, *looked.middle, d);
   decide_moving(segment, wish, media, source, looked.tree, d);
+  if (may_share_static(segment, wish, media) && d.moving == MovingMethod::anew) {
+    // Each state traces its own map, so further light paths cost more than was planned.
+    d.photon_paths = 0;
+    for (const Look& look : looked.looks) d.photon_paths = std::max(d.photon_paths, look.paths);
+  }
   decide_split(*looked.middle, wish, d);
 }
 
@@ -426,7 +453,7 @@ void decide_light(const PlannedSegment& segment, const std::vector<int>& view_fr
     StaticTree tree;
     return decide_preview(segment, view_frames, wish, source, tree, d);
   }
-  LookedAt looked(wish, media, source, d, {});
+  LookedAt looked(segment, wish, media, source, d, {});
   decide_by_looks(segment, wish, media, source, looked, d);
   if (d.photons()) d.view = view_of(view_frames, d.kinds, wish, source, looked.tree);
 }
@@ -452,7 +479,7 @@ void copy_shot(const PlannedSegment& segment, const Decisions& shot, const Looke
 /// Takes the shot's decisions about the light where they suit the segment.
 void take_from_shot(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                     const Decisions& shot, Decisions& d) {
-  LookedAt looked(wish, media, source, d, shot.indirect);
+  LookedAt looked(segment, wish, media, source, d, shot.indirect);
   if (departs(looked.looks, wish, media, shot)) {
     decide_by_looks(segment, wish, media, source, looked, d);
     std::ranges::find(d.reasons, kRecordsReason, &Reason::stage)->because +=

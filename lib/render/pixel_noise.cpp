@@ -47,6 +47,10 @@ double error_exponent() { return (1 - kStratified / 2) / kStratified; }
 
 double error_for_variance(double times) { return std::pow(times, -error_exponent()); }
 
+double stratified_rate() { return 2 / kStratified - 1; }
+
+double error_for_samples(double times) { return std::pow(times, -1 / kStratified); }
+
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
     : view_(view),
       options_(options),

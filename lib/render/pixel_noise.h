@@ -23,6 +23,10 @@ double error_exponent();
 /// Factor times^-x for `error`, with which wanted_samples() leaves the same noise if the variance is `times` as large:
 /// variance / samples is proportional to variance^(1 - k/2) error^k.
 double error_for_variance(double times);
+/// r = 2 / k - 1: n stratified samples leave the variance of one sample times n^-r, by the same model.
+double stratified_rate();
+/// Factor times^(-1 / k) for `error`, with which wanted_samples() is `times` as large.
+double error_for_samples(double times);
 
 /// Noise of the first samples of a picture, and the number of samples that each pixel needs. docs/pixels.md derives
 /// both.

@@ -136,7 +136,7 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   rough.gather = {8, 19.5, 1.5, 19, 1};
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
   EXPECT_FALSE(ways_to_light(rough, kOrder, false).front().map) << "nothing can send them";
-  rough.map_error = 10;
+  rough.caustic = {{.square = 10 * 25}};  // 25 photons light a place
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
   rough = example();
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);

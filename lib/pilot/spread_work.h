@@ -1,0 +1,47 @@
+// lib/pilot/spread_work.h -- spreads the work of a picture over samples, photons and gather rays so that what is seen
+// after the filter costs least.
+#pragma once
+
+#include <cstdint>
+
+#include "lib/pilot/rough_frame.h"
+
+namespace tempolux {
+
+/// Squared error of caustic light that the density of a map of `photons` light paths estimates, as it is seen in a
+/// filtered picture of `pixels` pixels: the sum over boxes of a = 1, 25 and 225 pixels of
+///     light^2 / (k + d (a - 1 + g)),     d: photons per pixel.
+/// About k = 25 photons light a pixel, however many photons the map has. The mean over a box also averages the photons
+/// of the box, and the filter averages g = 16 pixels. Without light the error is 0.
+double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t photons);
+
+/// A filtered picture with a map of caustic photons, with the samples that the wish's pixel error asks for.
+struct AskedPicture {
+  double pixels = 0;        ///< of the picture
+  double sample_work = 0;   ///< shadow rays of one sample
+  double samples = 0;       ///< of a pixel, if samples were independent: variance / wished error
+  double sample_error = 0;  ///< squared error that independent samples leave after the filter (SampleEffort)
+  double ray_work = 0;      ///< shadow rays of one gather ray of every record; 0 without records
+  double ray_error = 0;     ///< squared error of records at one gather ray each; 0 without records
+  int rays = 0;             ///< gather rays of a record; 0 without records
+  std::uint64_t photons = 0, most_photons = 0;  ///< light paths of the map, at least and at most
+  double pictures = 1;                          ///< number of pictures that share light paths above `photons`
+  double work = 0;                              ///< shadow rays of the whole picture; light paths cost at most as much
+};
+
+/// The numbers that replace those of an AskedPicture.
+struct SpreadWork {
+  double samples = 1;  ///< share of the samples
+  int rays = 0;
+  std::uint64_t photons = 0;
+};
+
+/// The numbers with the least work whose seen error is at most that of `asked`. Of samples the share is 2^(-i/4), at
+/// least 1/8 and 4 samples a pixel; light paths are doubled, rays are halved, doubled or quadrupled. The seen error is
+///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays.
+/// E is the squared error of the samples; n stratified samples leave n^(1-r) times the error of independent ones
+/// (stratified_rate()). s is their share. e: error of records at one ray. The factors are squared errors of boxes of 1,
+/// 5 and 15 pixels together over those of single pixels (docs/methods/ways.md).
+SpreadWork spread_work(const RoughFrame& rough, const AskedPicture& asked);
+
+}  // namespace tempolux
