@@ -71,7 +71,7 @@ CameraView through_lens(double radius_m) {
 }
 
 /// Photons of a small patch behind the focus, through points of the lens: the same light as through a pinhole, over a
-/// disc of pixels. Seen to fail: distances from the eye in place of the point of the lens.
+/// disc of pixels. Meant to catch: distances from the eye in place of the point of the lens.
 TEST(PhotonSplats, ALensBlursThem) {
   test::HandMadeScene made;
   made.add_quad({-9, -9, -4}, {9, -9, -4}, {9, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.6f)));

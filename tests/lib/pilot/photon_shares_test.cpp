@@ -37,7 +37,7 @@ struct Rooms {
   }
 };
 
-/// The other room's light never arrives, however strong it is. Seen to fail: shares by flux.
+/// The other room's light never arrives, however strong it is. Meant to catch: shares by flux.
 TEST(PhotonShares, TheLampOfTheSeenRoomGetsThem) {
   Rooms rooms(1, 1e4f);
   const std::vector<formats::ViewLight> shares = rooms.shares();
@@ -57,7 +57,7 @@ TEST(PhotonShares, NothingChangesWhereSharesByFluxAreRight) {
 }
 
 /// The outer side of the seen room's wall is in the cell, too, and lit by a strong lamp outside. No seen place looks at
-/// it. Seen to fail: all photons in the cell counted, which gave the lamp outside nearly all photons.
+/// it. Meant to catch: all photons in the cell counted, which gave the lamp outside nearly all photons.
 TEST(PhotonShares, TheOuterSideOfAWallDoesNotCount) {
   Rooms rooms(1, 1e4f, {0, 3, 0});
   rooms.scene.add_box({-1.2f, -1.2f, -1.2f}, {1.2f, 1.2f, 1.2f}, matte(Rgb(0.5f)));

@@ -45,7 +45,7 @@ TEST(SeenMapError, FallsWithThePhotonsOfABox) {
 }
 
 /// Photons are cheap and caustic light has most of the error: more photons, fewer samples, less work at no more error.
-/// Error and work are those of the header, written once more. Seen to fail: work compared before the error.
+/// Error and work are those of the header, written once more. Meant to catch: work compared before the error.
 TEST(SpreadWork, TradesSamplesForPhotonsAtTheSameError) {
   const RoughFrame rough = lit(0.01 * kPartPixels / 700'000);
   const AskedPicture picture = asked(2);

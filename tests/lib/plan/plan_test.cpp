@@ -317,7 +317,7 @@ TEST(Graph, ANameChangesWithAllThatTheFileIsMadeFromAndWithNothingElse) {
   EXPECT_FALSE(same(graph_of(plan_of(scene, {0, 1}), records(), draft), "pictures"));
 }
 
-/// Seen to fail: records whose key holds the whole camera (cameras() in place of pinholes()).
+/// Meant to catch: records whose key holds the whole camera (cameras() in place of pinholes()).
 TEST(Graph, AnEditOfTheLensRendersFramesAgainAndNothingElse) {
   Scene scene = still_room();
   const std::set<std::string> sharp = names(graph_of(plan_of(scene, {0}), records()));

@@ -12,7 +12,7 @@ namespace {
 
 /// A plane that is seen at a cosine of 1/8 to its normal. Along its slope a pixel is eight times as long as wide and
 /// holds two periods of a black and a white stripe; every pixel's centre lies on a white one. The mean is 1/2.
-/// Seen to fail: 1, the reflectance at the centre, since the stripes are wider than a pixel is wide.
+/// Meant to catch: 1, the reflectance at the centre, since the stripes are wider than a pixel is wide.
 TEST(DataChannels, AlbedoIsTheMeanOverAPixelThatIsSeenAtASlant) {
   test::HandMadeScene made;
   Material stripes = test::matte(Rgb(1.0f));

@@ -34,7 +34,7 @@ void for_lens_points(int side, const Body& body) {
 
 /// Through the points of a lens of radius r, focused at d, a point at depth z is seen in a disc of diameter
 /// 2 r |z - d| / (z d) at distance 1, here times 32 pixels. The variance of a uniform disc along an axis is its squared
-/// diameter / 16. Seen to fail: a lens whose points are squared towards the middle (variance), focus from the eye in
+/// diameter / 16. Meant to catch: a lens whose points are squared towards the middle (variance), focus from the eye in
 /// place of along the axis (the second point).
 TEST(Lens, TheCircleOfConfusionHasItsDiameter) {
   const double r = 0.05, d = 2;
@@ -111,7 +111,7 @@ TEST(Lens, FStopGivesTheRadius) {
 
 /// A lamp of 6 x 6 pixels behind the focus: blurred over a disc of 8 pixels it has the same light in the whole picture,
 /// as from each point of the lens it covers the same area of the picture. 36 pixels' samples decide, of which most are
-/// not at the border: Sobol points leave about .1 %. Seen to fail: rays that start on the lens and keep the pinhole's
+/// not at the border: Sobol points leave about .1 %. Meant to catch: rays that start on the lens and keep the pinhole's
 /// direction (a lamp that is not 6 pixels wide).
 TEST(Lens, BlurKeepsTheLight) {
   test::HandMadeScene made;

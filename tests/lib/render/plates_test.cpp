@@ -76,7 +76,7 @@ HandMadeScene box(const Material& material, Vec3 moved = {}, std::size_t leave_o
   return scene;
 }
 
-/// Seen to fail: without the test of the edges an open box is a plate; with a tilt of 1e-2 allowed the wedge is one.
+/// Meant to catch: without the test of the edges an open box is a plate; with a tilt of 1e-2 allowed the wedge is one.
 TEST(Plates, AreClosedSolidsOfTwoParallelFaces) {
   const Material clear = test::glass(0);
   HandMadeScene plate = box(clear), wedge = box(clear, {0, 0.003f, 0}), open = box(clear, {}, 2);
@@ -123,7 +123,7 @@ TEST(Plates, AreFree) {
   EXPECT_TRUE(with({-9, -1, -9}, {9, 1, 0.05f}, false));
 }
 
-/// Seen to fail: with tint where tint^2 belongs in R, by .02; without the cosine in the absorption, by .1.
+/// Meant to catch: with tint where tint^2 belongs in R, by .02; without the cosine in the absorption, by .1.
 TEST(Plates, SharesAreTheSumsOverAllReflections) {
   const Bsdf outer(tinted_glass(), true, kThickness), inner(tinted_glass(), false, kThickness);
   for (const float cosine : {1.0f, 0.5f, 0.1f, 0.01f})
@@ -167,7 +167,7 @@ constexpr Shone kLights[] = {{"sun", true, false, false}, {"point", false, true,
 
 /// Layers of a camera path that starts below the plate, and the irradiance of a point. Light that the plate reflects
 /// back to the floor is caustic and comes from the lit floor, which is a layer of its own (indirect).
-/// Seen to fail: with plates switched off all light is caustic.
+/// Meant to catch: with plates switched off all light is caustic.
 TEST(Plates, LightBehindThemIsDirect) {
   Environment sky;
   sky.radiance = {Rgb(3.0f)};

@@ -83,7 +83,7 @@ double expected_column(double left, double right, double way, int x) {
 }
 
 /// A square that slides by 8 pixels a frame, with the shutter open for half of it: its edges are ramps of 4 pixels
-/// around their places. 1 m is 20 pixels; at frame 1 the square's left edge is at x = .4 m. Seen to fail: a shutter
+/// around their places. 1 m is 20 pixels; at frame 1 the square's left edge is at x = .4 m. Meant to catch: a shutter
 /// that opens at the frame's time.
 TEST(Shutter, ASlidingEdgeIsARamp) {
   Film film;
@@ -105,7 +105,7 @@ TEST(Shutter, AMovingCameraBlursWhatStands) {
 }
 
 /// A square of side 2a that turns once in each frame, with the shutter always open: at distance r from its axis it is
-/// there for 1 - 4 / pi acos(a / r) of the time. At whole frames nothing has moved. Seen to fail: movers that are
+/// there for 1 - 4 / pi acos(a / r) of the time. At whole frames nothing has moved. Meant to catch: movers that are
 /// looked for at whole frames only.
 TEST(Shutter, ASpinningWheelIsARing) {
   Film film;
@@ -179,7 +179,7 @@ TEST(Shutter, IsNoneWhereNothingIsBlurred) {
 }
 
 /// Light that belongs to the frame's time is found where the hit is then: a square that slides by .4 m a frame and
-/// turns about z has its places and normals back. Seen to fail: places of the hit's own time.
+/// turns about z has its places and normals back. Meant to catch: places of the hit's own time.
 TEST(Shutter, StoredLightSticksToWhatMoves) {
   Film film;
   film.shutter_frames = 2;
