@@ -39,7 +39,7 @@ IDEAS = (
          (("tools/stages/render_frame.cpp", "frame.spread_outliers = !options.keep_outliers &&", "frame.spread_outliers = false &&"),)),
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
-         (("lib/pilot/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
+         (("lib/pilot/seen_spheres.cpp", "gain >= kLeastGain};", "gain >= 1e9 * kLeastGain};"),)),
     Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
          (("lib/pilot/rough_frame.cpp", "if (scene.lights.has_distant()) rough.paths_of_light", "if (scene.lights.count() > 1000000000) rough.paths_of_light"),)),
     Idea("points by importance", "points lie where cameras look", "points",

@@ -126,7 +126,7 @@ TEST(ComparisonTest, ReaderRefusesWhatIsNotAComparison) {
   EXPECT_EQ(refusal(R"({"schema": "tempolux.stats", "version": "1.0"})"),
             ": not a tempolux.comparison file: its \"schema\" is another");
   EXPECT_EQ(refusal(R"({"schema": "tempolux.comparison", "version": "2.0"})"),
-            ": version 2.0 of tempolux.comparison; this program reads 1.x");
+            ": version \"2.0\" of tempolux.comparison; this program reads 1.x");
   EXPECT_EQ(refusal(R"({"schema": "tempolux.comparison", "version": "1.0"})"), ": has no \"total\"");
   json document = json::parse(comparison_json(example()));
   document["total"]["mse"] = "much";
