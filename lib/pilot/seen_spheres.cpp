@@ -292,8 +292,11 @@ void aim_at_seen(const Tracer& tracer, const CameraView& view, const std::string
 }
 
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view, Lights::Which which) {
-  aim_at_seen(tracer, view, "direct,caustic,indirect", table);
-  if (which == Lights::Which::placed) table.aim.clear();
+  if (which != Lights::Which::placed) {
+    SeenAround around;
+    look_around(tracer, view.camera(), view.width(), view.height(), around);
+    table.aim = spheres_in_scene(spheres_around(around.places, table.sphere_radius), tracer.frame().origin);
+  }
   return Lights(tracer.frame(), table, which);
 }
 

@@ -71,7 +71,8 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
 /// (photon_shares.h). `kinds`: the kinds of photons that are wanted, as for PhotonOptions::set_kinds.
 void aim_at_seen(const Tracer& tracer, const CameraView& view, const std::string& kinds, EmissionTable& table);
 
-/// Lights whose photons of all kinds are aimed where the camera looks. `which`: as for Lights.
+/// Lights whose photons are aimed at the spheres; their shares follow from flux, since the pilot of shares would cost as
+/// much as the audit of a frame. `which`: as for Lights.
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view,
                     Lights::Which which = Lights::Which::all);
 
