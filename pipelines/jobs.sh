@@ -10,7 +10,7 @@
 # Files that the same pictures need are made by one job. So the files of one picture, from the first that no other
 # picture needs to its frame, are a job; light that several pictures share is another one; no two jobs make the same
 # file, and no job waits for one that waits for it. With GROUP=segment all pictures of a segment count as one. The last
-# job makes the sheet, and previews that no exposure was known for.
+# job makes the sheet, and those previews whose exposure was not known before the frames existed.
 #
 # MEGABYTES: half as much again as the largest command needs, the accuracy of the estimate, and 64 for the shell and
 # make. SECONDS: twice the CPU seconds of the commands, as if they had one processor, and a minute to start.

@@ -27,7 +27,8 @@ void append(std::string& text, double value, char after) {
   throw InputError(name + ": line " + std::to_string(line) + ": " + why + "; let scene-plan write the file anew");
 }
 
-/// Numbers at the end of a line, one blank or more before each. Refuses the line unless there are as many as in `values`.
+/// Numbers at the end of a line, one blank or more before each. Refuses the line unless there are as many as in
+/// `values`.
 void parse_numbers(std::string_view line, std::span<double> values, const std::string& why, const std::string& name,
                    std::size_t number) {
   const char* at = line.data();

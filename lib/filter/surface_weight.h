@@ -9,7 +9,8 @@
 namespace tempolux {
 
 /// Compares the eight pixels (x + i, y), i from 0 to 7, with the pixels (dx, dy) away from them, for one dy and any dx:
-/// the rule of PixelSurfaces. The values of the eight pixels are loaded once. All pixels lie in the picture or its margin.
+/// the rule of PixelSurfaces. The values of the eight pixels are loaded once. All pixels lie in the picture or its
+/// margin.
 class SurfaceEight {
  public:
   SurfaceEight(const Surfaces& frame, int y, int dy, std::ptrdiff_t x)

@@ -110,9 +110,8 @@ inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) c
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
   if (tracer_.frame().materials[met.hit.material].textures || met.hit.plate > 0) [[unlikely]] {
     const SurfaceMaterial material(tracer_.frame(), met.hit);
-    met.bsdf = material.values().axes.any()
-                   ? &met.textured.emplace(material, cosine > 0, SeenSide(met.hit, wo).frame)
-                   : &met.textured.emplace(material, cosine > 0, met.hit.plate);
+    met.bsdf =
+        &met.textured.emplace(material, cosine > 0, SeenSide(met.hit, wo).frame, Carries::radiance, met.hit.plate);
   }
   met.wo = wo;
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
@@ -272,9 +271,9 @@ Rgb IncomingRadiance::reflected_specular(const Met& met, const SeenSide& side, c
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   Rgb weight = next.weight;
   if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
-  Further after = next.straight
-                      ? from.behind_pane(weight, met.leg)
-                      : from.after_specular(weight, sampled && !next.delta ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
+  Further after = next.straight ? from.behind_pane(weight, met.leg)
+                                : from.after_specular(
+                                      weight, sampled && !next.delta ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
   event.pass(met.hit, material, dot(met.hit.normal_geometric, met.wo) > 0, after.inside);
   if (source) source->partial = true;
   return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to);

@@ -112,8 +112,8 @@ inline float RecordStore::weight_of(const Entry& entry, Vec3 position, Vec3 norm
   return seen.contains(d, entry.normal) ? weight : 0;
 }
 
-/// Weight of a valid record at a place whose own radius is at most `place_radius` (interpolate()). `distance` [m]: of the
-/// place from the record.
+/// Weight of a valid record at a place whose own radius is at most `place_radius` (interpolate()). `distance` [m]: of
+/// the place from the record.
 inline float RecordStore::agreeing(float weight, float radius, float distance, float place_radius) {
   const float most = place_radius + distance;
   if (!(radius > most)) return weight;

@@ -44,7 +44,10 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
   std::vector<double> around;  // radii
   for (double radius = 2 * std::sqrt(squares); radius <= scene_radius; radius *= 2) around.push_back(radius);
   const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
-  for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
+  for (const AimSphere& sphere : spheres) {
+    add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
+    smallest_ = std::min(smallest_, sphere.radius);
+  }
   given_ = discs_.size();
   for (const double radius : around) add(middle, radius, kAround / double(around.size()));
 }
@@ -94,32 +97,24 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
 
 bool Aim::holds(Vec3 point) const {
   const Vec3d from = Vec3d(point) - Vec3d(scene_centre_);
-  return std::ranges::any_of(std::span(discs_).first(given_), [&](const Disc& d) {
-    const Vec3d to = from - d.centre;
-    return dot(to, to) < d.radius * d.radius;
-  });
+  return std::ranges::any_of(given(), [&](const Disc& d) { return d.holds(from); });
 }
 
 /// Radius [m] up to which spheres are targets from a place, which is relative to the scene's centre.
 double Aim::largest_target(Vec3d place) const {
   double own = INFINITY;
-  for (const Disc& d : std::span(discs_).first(given_)) {
-    const Vec3d to = place - d.centre;
-    if (dot(to, to) < d.radius * d.radius) own = std::min(own, d.radius);
-  }
+  for (const Disc& d : given())
+    if (d.holds(place)) own = std::min(own, d.radius);
   return own / kMuchSmaller;
 }
 
-bool Aim::aims_from(Vec3 place) const {
-  const double largest = largest_target(Vec3d(place) - Vec3d(scene_centre_));
-  return std::ranges::any_of(std::span(discs_).first(given_), [&](const Disc& d) { return d.radius <= largest; });
-}
+bool Aim::aims_from(Vec3 place) const { return smallest_ <= largest_target(Vec3d(place) - Vec3d(scene_centre_)); }
 
 Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Vec3d from = Vec3d(place) - Vec3d(scene_centre_);
   const double largest = largest_target(from);
   double left = 0;
-  for (std::size_t k = 0; k < given_; ++k) left += discs_[k].radius <= largest ? discs_[k].share : 0;
+  for (const Disc& d : given()) left += d.radius <= largest ? d.share : 0;
   left *= double(u.x);
   std::size_t chosen = given_;
   for (std::size_t k = 0; k < given_; ++k) {
@@ -136,23 +131,23 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Frame axes(Vec3(to * (1 / length(to))));
   const Vec3 direction =
       normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
-  return {direction, pdf_solid_angle(from, direction, chosen)};
+  return {direction, pdf_solid_angle(from, direction, chosen, largest)};
 }
 
 double Aim::pdf_solid_angle(Vec3 place, Vec3 direction) const {
-  return pdf_solid_angle(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
+  const Vec3d from = Vec3d(place) - Vec3d(scene_centre_);
+  return pdf_solid_angle(from, direction, discs_.size(), largest_target(from));
 }
 
 /// `chosen` is the sphere towards which the direction was drawn: it counts even where rounding puts the direction just
-/// outside the rim. `place` is relative to the scene's centre.
-double Aim::pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const {
-  const double largest = largest_target(place);
+/// outside the rim. `place` is relative to the scene's centre; `largest`: largest_target(place).
+double Aim::pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen, double largest) const {
   double pdf = 0, shares = 0;
   for (std::size_t k = 0; k < given_; ++k) {
     if (!(discs_[k].radius <= largest)) continue;
     shares += discs_[k].share;
     const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));
-    if (k == chosen || (dot(to, Vec3d(direction)) > 0 && dot(aside, aside) < discs_[k].radius * discs_[k].radius))
+    if (k == chosen || (dot(to, Vec3d(direction)) > 0 && length2(aside) < discs_[k].radius * discs_[k].radius))
       pdf += discs_[k].share / (2 * kPiD * one_minus_cos(discs_[k].radius, to));
   }
   return shares > 0 ? pdf / shares : 0;

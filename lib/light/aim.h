@@ -16,6 +16,8 @@ struct AimSphere {
   Vec3d centre{};     ///< of the sphere; scene space, m
   double radius = 0;  ///< m, above 0
   double weight = 0;  ///< above 0; Aim divides by the sum of all weights
+
+  bool holds(Vec3d point) const { return length2(point - centre) < radius * radius; }
 };
 
 /// Start points of parallel light. A photon starts with probability kUniform uniformly on a disc of the scene sphere's
@@ -56,12 +58,13 @@ class Aim {
   /// True if one of the given spheres holds the point (scene space).
   bool holds(Vec3 point) const;
 
-  /// True if bounces at this place (scene space) may be aimed at given spheres: at those that are kMuchSmaller times
-  /// smaller than the smallest given sphere that holds the place. All spheres if none holds it.
+  /// True if bounces at this place (scene space) may be aimed at given spheres. Targets are the spheres that are
+  /// kMuchSmaller times smaller than the smallest given sphere that holds the place; if none holds it, all spheres.
   bool aims_from(Vec3 place) const;
-  /// A wide ground that a window shows is held by a large sphere, and the room behind the window by small ones. Light
-  /// that the ground reflects must find the window. Cells of one room differ by less: bounces inside a room find its
-  /// other cells anyway.
+  /// A large sphere holds a wide ground that a window shows, and small spheres hold the room. Light that the ground
+  /// reflects must find the window, so the factor must be below the ratio of these radii. It must be above the ratio of
+  /// the spheres of one room, since bounces inside a room find its other spheres anyway: the smallest cell of a room is
+  /// a quarter of the distance seen.
   static constexpr double kMuchSmaller = 8;
 
   /// A direction from a place into one of the spheres that aims_from() allows. The sphere is chosen by weight; the
@@ -85,12 +88,16 @@ class Aim {
     double below;  // probability of choosing the scene's disc or an earlier disc: kUniform + sum of their shares
     double share;  // probability of this disc
     double gain;   // share R^2 / r^2 with the scene's radius R: term of the disc in p pi R^2 (Start::flux)
+
+    bool holds(Vec3d point) const { return length2(point - centre) < radius * radius; }
   };
   void add(Vec3d centre, double radius, double share);
-  double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const;
+  std::span<const Disc> given() const { return std::span(discs_).first(given_); }
   double largest_target(Vec3d place) const;
+  double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen, double largest) const;
   std::vector<Disc> discs_;  ///< the given spheres come first
   std::size_t given_ = 0;
+  double smallest_ = INFINITY;  ///< m: least radius of the given spheres
   Vec3 scene_centre_{};
   double scene_radius_ = 0;
 };

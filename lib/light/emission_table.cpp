@@ -17,8 +17,6 @@ namespace {
 /// each tool that builds lights.
 constexpr double kMostParts = 0x1p16;
 
-double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
-
 /// Raises `weights`, the largest weight of each slot over several frames, by the weights of one more frame.
 void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vector<double>& weights) {
   std::size_t slot = 0;
@@ -76,6 +74,8 @@ void divide_parts(const SceneFrame& frame, const std::vector<std::uint32_t>& sur
 }
 
 }  // namespace
+
+double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
 std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame) {
   const std::uint32_t s = table.surfaces[index];

@@ -38,14 +38,17 @@ struct EmissionSlot {
   double probability = 0;                       ///< of choosing this slot for a photon; sums to 1 over the table
 };
 
+/// Flux [W] as it counts where photons are shared out: luminance, or 5 % of the largest channel if this share is more,
+/// so that blue lamps count.
+double emission_weight(Rgbd flux);
+
 /// Probabilities with which lights emit photons, the same for all frames of a segment. Slots are the parts of
 /// the triangles of `surfaces` in order, then the frame's punctual lights, then the environment if there is one.
-/// A probability is proportional to the slot's maximum flux over the segment's frames. Flux is measured by luminance,
-/// or by 5 % of the largest channel if that is more, so that blue lamps count. A directional light's flux is its
-/// irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times the integral of its
-/// radiance. A part of a triangle whose emission is textured counts with its mean.
-/// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. So if there are an
-/// environment and other lights, the environment gets at least kUnguidedShare of the photons, and so do the others.
+/// A probability is proportional to the slot's maximum flux (emission_weight) over the segment's frames. A directional
+/// light's flux is its irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times
+/// the integral of its radiance. A part of a triangle whose emission is textured counts with its mean. Little of the
+/// environment's light may enter a building, or lamps may hardly matter outdoors. So if there are an environment and
+/// other lights, the environment gets at least kUnguidedShare of the photons, and so do the others.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of the surfaces that emit at some frame
   std::vector<std::shared_ptr<const EmissionParts>> parts;  ///< of `surfaces`, shares of the first frame
@@ -80,8 +83,8 @@ class Lights {
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
 
-  /// The lights inside the scene alone, for emit(): half of the photons are shared out by the probabilities of the table,
-  /// the other half equally among the nodes that hold lights, so that a weak lamp gets photons beside suns and strong
+  /// The lights inside the scene alone, for emit(). Half of the photons are shared out by the probabilities of the
+  /// table, the other half equally among the nodes that hold lights. So a weak lamp gets photons beside suns and strong
   /// lamps. No light emits if nothing shines inside the scene.
   Lights placed_alike() const;
 

@@ -29,11 +29,7 @@ AlbedoPair GgxAlbedo::at(float cos_theta) const {
     totals[r] = weight_[r] * (across[0] * e[0][i] + across[1] * e[1][i] + across[2] * e[2][i] + across[3] * e[3][i]);
     ms[r] = weight_[r] * (across[0] * c[0][i] + across[1] * c[1][i] + across[2] * c[2][i] + across[3] * c[3][i]);
   }
-  float total = totals[0] + totals[1] + totals[2] + totals[3];
-  const float m = ms[0] + ms[1] + ms[2] + ms[3];
-  total = std::clamp(total, 0.0f, 1.0f);
-  const float k = std::clamp(1 - m * sum, 0.0f, 1.0f), k2 = k * k, b = total * k2 * k2 * k;
-  return {total - b, b};
+  return albedo_table::split(totals[0] + totals[1] + totals[2] + totals[3], ms[0] + ms[1] + ms[2] + ms[3], sum);
 }
 
 AlbedoPair GgxAlbedo::mean() const {

@@ -1,6 +1,7 @@
 // lib/material/albedo.h -- directional albedo of the GGX lobe, from a table.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace tempolux {
@@ -40,6 +41,13 @@ class GgxAlbedo {
 };
 
 namespace albedo_table {
+/// a and b from the table's E and m, with sum = cos + alpha.
+inline AlbedoPair split(float total, float m, float sum) {
+  total = std::clamp(total, 0.0f, 1.0f);
+  const float k = std::clamp(1 - m * sum, 0.0f, 1.0f), k2 = k * k, b = total * k2 * k2 * k;
+  return {total - b, b};
+}
+
 extern const float kTotal[kColumns][kRows];   ///< E at F = 1: a + b
 extern const float kCosine[kColumns][kRows];  ///< m, from which b = E (1 - m (cos + alpha))^5
 extern const float kMeanA[kRows], kMeanB[kRows];

@@ -1,12 +1,13 @@
 #include "lib/material/anisotropic_ggx.h"
 
 #include "lib/material/cubic_weights.h"
+#include "lib/material/ggx.h"
 
 namespace tempolux {
 namespace {
 
 float fourth_root(float x) { return std::sqrt(std::sqrt(x)); }
-/// Inverse of alpha_b_of() and alpha_t_of() of the table: position of a width between `first`'s and 1.
+/// Position in the table, from 0 to 1, of the width alpha; `first` is the width at 0, and 1 is the width at 1.
 float position_between(float first, float alpha) {
   const float from = fourth_root(first);
   return from < 1 ? std::clamp((fourth_root(alpha) - from) / (1 - from), 0.0f, 1.0f) : 0;
@@ -49,9 +50,7 @@ AlbedoPair AnisotropicGgx::albedo(Vec3 w) const {
         const float(*e)[2] = &anisotropic_table::kAlbedo[row_[0] + i][row_[1] + j][column + k][first];
         for (int l = 0; l < 4; ++l) total += weight * around[l] * e[l][0], m += weight * around[l] * e[l][1];
       }
-  total = std::clamp(total, 0.0f, 1.0f);
-  const float k = std::clamp(1 - m * (cos + alpha), 0.0f, 1.0f), k2 = k * k, b = total * k2 * k2 * k;
-  return {total - b, b};
+  return albedo_table::split(total, m, cos + alpha);
 }
 
 AlbedoPair AnisotropicGgx::mean_albedo() const {
@@ -84,12 +83,7 @@ float AnisotropicGgx::reflection(Vec3 wi, Vec3 wo, Vec3 h) const {
 }
 
 Vec3 AnisotropicGgx::sample_normal(Vec3 wo, Vec2 u) const {
-  const Vec3 v = along(wo), stretched = normalize(Vec3{v.x * alpha_t_, v.y * alpha_b_, v.z});
-  const float phi = 2 * kPi * u.x;
-  const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;
-  const float r = std::sqrt(std::clamp(1 - z * z, 0.0f, 1.0f));
-  const Vec3 h = Vec3{r * std::cos(phi), r * std::sin(phi), z} + stretched;
-  return back(normalize(Vec3{h.x * alpha_t_, h.y * alpha_b_, std::max(h.z, 1e-7f)}));
+  return back(ggx::sample_visible_normal(along(wo), alpha_t_, alpha_b_, u));
 }
 
 float AnisotropicGgx::pdf_reflected(Vec3 h, Vec3 wo) const { return distribution(h) * 0.5f / (wo.z + smith_root(wo)); }

@@ -10,10 +10,10 @@
 
 namespace tempolux {
 
-/// GGX with the width alpha_t along `grain` and alpha_b across it, alpha_t >= alpha_b, as KHR_materials_anisotropy has
-/// it: alpha_b = roughness^2, alpha_t = alpha_b + (1 - alpha_b) strength^2. Smith's height-correlated masking; visible
-/// normals by Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018. A width for BasicGloss
-/// (opaque_lobes.h); local frame, z = normal.
+/// GGX with the width alpha_t along `grain` and alpha_b across it, alpha_t >= alpha_b. KHR_materials_anisotropy defines
+/// alpha_b = roughness^2 and alpha_t = alpha_b + (1 - alpha_b) strength^2. Masking is Smith's, correlated by height.
+/// Visible normals are sampled as by Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018.
+/// BasicGloss (opaque_lobes.h) takes this class as its width. Directions are in the local frame, z = normal.
 class AnisotropicGgx {
  public:
   static constexpr bool kDirected = true;
@@ -47,27 +47,23 @@ class AnisotropicGgx {
 
 namespace anisotropic_table {
 inline constexpr int kRows = 10, kWidths = 10, kColumns = 14, kTurns = 9;
-/// E at F = 1, and m as in albedo.h: b = E (1 - m (cos + alpha))^5, where alpha is the width that is seen.
+/// [0]: the albedo E at F = 1. [1]: m, from which follows b = E (1 - m (cos + alpha))^5 (albedo.h). alpha is the width
+/// of GGX at the angle between the direction and the grain (alpha_at).
 extern const float kAlbedo[kRows][kWidths][kColumns][kTurns][2];
 extern const float kMean[kRows][kWidths][2];  ///< cosine-weighted means of E and b
 
-/// alpha_b of a row, alpha_t of a width, and the direction of a column and a turn; positions from 0 to 1.
-inline double alpha_b_of(double row) {
-  const double first = std::pow(albedo_table::kMinAlpha, 0.25), root = first + row * (1 - first);
-  return root * root * root * root;
-}
+/// Rows hold alpha_b as the rows of albedo.h do, columns the cosine as its columns at the width alpha. alpha_t of a
+/// width, a position from 0 to 1:
 inline double alpha_t_of(double alpha_b, double width) {
   const double first = std::pow(alpha_b, 0.25), root = first + width * (1 - first);
   return root * root * root * root;
 }
 /// Angle [rad] between the grain and the plane of the direction.
 inline double angle_of(double turn) { return turn * 1.5707963267948966; }
-/// Width of GGX as seen from an angle to the grain.
+/// Width alpha of GGX in the plane at this angle [rad] to the grain.
 inline double alpha_at(double alpha_t, double alpha_b, double angle) {
   return std::hypot(alpha_t * std::cos(angle), alpha_b * std::sin(angle));
 }
-/// The columns of albedo.h for the width that is seen.
-inline double cos_of(double column, double alpha) { return albedo_table::cos_of_column(column, alpha); }
 }  // namespace anisotropic_table
 
 }  // namespace tempolux

@@ -24,9 +24,8 @@ auto Bsdf::visit(int i, Function&& function) const {
       stack_[i].lobe);
 }
 
-Bsdf Bsdf::in_frame(const Frame& from, const Frame& to) const {
+Bsdf Bsdf::turned(const Frame& from, const Frame& to) const {
   Bsdf turned = *this;
-  if (!directed_) return turned;
   for (int i = 0; i < lobes_; ++i)
     std::visit(
         [&](auto& lobe) {
@@ -180,7 +179,8 @@ void Bsdf::sample_specular(const Direction& wo, float u_lobe, Vec2 u, float p, S
     lobe.sample(o, u_lobe, u, s);
     if (!(s.pdf_solid_angle > 0)) return;
     s.pdf_solid_angle *= chance;
-    if constexpr (std::is_same_v<std::decay_t<decltype(lobe)>, Mirror>) {  // has the same albedo towards wi
+    constexpr bool mirror = std::is_same_v<std::decay_t<decltype(lobe)>, Mirror>;
+    if (mirror && !directed_) {  // this lobe and those above have the same albedo towards wi
       s.weight = lobe.weight(o, o, chance, s.pdf_solid_angle);
     } else {
       const Direction wi = along(s.wi);

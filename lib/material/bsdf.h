@@ -20,15 +20,15 @@ namespace tempolux {
 /// exceptions: rough glass also scatters to wi.z < 0, and delta lobes can only be sampled.
 ///
 /// The lobes lie in a stack: those of event S, below them the Lambert lobe of event D. Each receives the light that the
-/// lobes above it do not reflect. The Lambert lobe is coupled as by Kelemen & Szirmay-Kalos, "A Microfacet Based
-/// Coupled Specular-Matte BRDF Model", EG 2001. Below a lobe of albedo A, it is multiplied by
-///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean),
-/// with A of the largest channel and A_mean its cosine-weighted mean over the hemisphere. So below all lobes of event
-/// S, with c as their product,
+/// lobes above it do not reflect. The coupling of the Lambert lobe follows Kelemen & Szirmay-Kalos, "A Microfacet Based
+/// Coupled Specular-Matte BRDF Model", EG 2001. If a lobe of albedo A lies above the Lambert lobe, the value of the
+/// Lambert lobe is multiplied by
+///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean).
+/// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. With several lobes
+/// above, c(w) is the product of their factors, and
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
-/// The coupling is separable, a factor of wi times a factor of wo. So records, points and photons may keep light that
-/// is weighted by c(wi), and are exact for every wo; a coat or a sheen above the Lambert lobe keeps that exact.
-/// Below a single lobe
+/// The coupling is a factor of wi times a factor of wo. So records, points and photons may keep light that is weighted
+/// by c(wi), and are exact for every wo, also below a coat or a sheen. Below a single lobe
 ///     integral of c(w) cos / pi = (1 - A_mean) / sqrt(1 - A_mean) = sqrt(1 - A_mean), and
 ///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
 /// the Lambert lobe receives the light that f_S does not reflect, and D and S together return A + rho (1 - A) <= 1 in
@@ -39,19 +39,20 @@ namespace tempolux {
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic).
 /// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
-/// above these, with F0 = 0.04 clearcoat and F90 = clearcoat; coat.h if the coat has a normal of its own. Between the
-/// two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider along one
-/// direction (anisotropic_ggx.h).
+/// above these, with F0 = 0.04 clearcoat and F90 = clearcoat. A coat with a normal of its own is a Coat (coat.h).
+/// Between the two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider
+/// along one direction (anisotropic_ggx.h).
 ///
 /// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included.
 /// Paths carry L / n^2 in place of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the
 /// same value as one outside. sample() also serves photons, which carry watts; photon_trace.h divides their density
 /// inside a solid by n^2.
 ///
-/// With that factor a mirror below a coat would return more light than arrives, since its wi is not spread over the
-/// hemisphere. A lobe of event S below others is multiplied by min(P(wi), P(wo)), where P(w) is the product of 1 - A(w)
-/// over the lobes above it. This is exact for mirrors. Light of wide lobes that leaves at a more grazing angle than it
-/// came loses what the coat would have sent back to the lobe: at most 5 % below a smooth coat of index 1.5.
+/// The Lambert lobe's factor c(wo) c(wi) would make a mirror below a coat return more light than arrives, since a
+/// mirror does not spread light over the hemisphere. A lobe of event S below others is multiplied by min(P(wi), P(wo)),
+/// where P(w) is the product of 1 - A(w) over the lobes above it. This is exact for mirrors. A wide lobe loses light
+/// that leaves at a more grazing angle than it arrived: the coat would have sent part of this light back to the lobe.
+/// The loss is at most 5 % below a smooth coat of index 1.5.
 ///
 /// A further lobe of event S is a class with the functions that lobe.h lists, in a file of its own. Its name stands in
 /// Layer, and the constructor adds it. A further lobe of event D adds its rho to that of the Lambert lobe.
@@ -69,8 +70,11 @@ class Bsdf {
        float plate = 0)
       : Bsdf(material, front, &frame, carries, plate) {}
 
-  /// The same scattering in another local frame.
-  Bsdf in_frame(const Frame& from, const Frame& to) const;
+  /// use(bsdf) of the same scattering in another local frame. Only a Bsdf whose lobes have axes is copied.
+  template <class Use>
+  auto in_frame(const Frame& from, const Frame& to, const Use& use) const {
+    return directed_ ? use(turned(from, to)) : use(*this);
+  }
 
   /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
   /// too.
@@ -172,6 +176,8 @@ class Bsdf {
   Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate);
   template <class AnyLobe, class... Parameters>
   void add(const Parameters&... parameters);
+  Bsdf turned(const Frame& from, const Frame& to) const;
+  void add_round(const Schlick& fresnel, float roughness);
   void add_coat(const MaterialValues& material, const Frame* frame, Carries carries);
   void add_reflection(const MaterialValues& material, const Schlick& fresnel, const Frame* frame);
   template <class Function>

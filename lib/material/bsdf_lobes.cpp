@@ -42,29 +42,30 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
     const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
     if (material.anisotropy > 0) [[unlikely]]
       add_reflection(material, fresnel, frame);
-    else if (material.roughness < kMirrorRoughness) add<Mirror>(fresnel);
-    else add<Gloss>(fresnel, RoundGgx(material.roughness * material.roughness), rest_);
+    else add_round(fresnel, material.roughness);
   }
   lambert_.add(material.base_color * (1 - metallic));
   diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
 }
 
-// Not inlined: materials without these lobes do not pay for the registers.
-/// Adds the clearcoat, which is the uppermost lobe, and the sheen. KHR_materials_clearcoat gives the coat the
-/// index 1.5.
+/// Adds a reflection that is the same all round: a Mirror below kMirrorRoughness, else a Gloss.
+inline void Bsdf::add_round(const Schlick& fresnel, float roughness) {
+  if (roughness < kMirrorRoughness) add<Mirror>(fresnel);
+  else add<Gloss>(fresnel, RoundGgx(roughness * roughness), rest_);
+}
+
+/// Adds the clearcoat, the uppermost lobe, of index 1.5, and the sheen. Not inlined: the registers would slow materials
+/// without these lobes.
 [[gnu::noinline]] void Bsdf::add_coat(const MaterialValues& material, const Frame* frame, Carries carries) {
   const Schlick fresnel{Rgb(normal_reflectance(1.5f) * material.clearcoat), material.clearcoat};
   const float roughness = material.clearcoat_roughness;
-  const Mirror mirror(fresnel);
-  const Gloss gloss(fresnel, RoundGgx(roughness * roughness), rest_);
   directed_ = frame && material.clearcoat > 0 && length2(material.axes.coat_normal) > 0;
   if (directed_) {
     const Vec3 axis = frame->to_local(material.axes.coat_normal), normal = axis.z < 0 ? -axis : axis;
-    if (roughness < kMirrorRoughness) add<Coat<Mirror>>(mirror, normal, carries);
-    else add<Coat<Gloss>>(gloss, normal, carries);
+    if (roughness < kMirrorRoughness) add<Coat<Mirror>>(Mirror(fresnel), normal, carries);
+    else add<Coat<Gloss>>(Gloss(fresnel, RoundGgx(roughness * roughness), rest_), normal, carries);
   } else if (material.clearcoat > 0) {
-    if (roughness < kMirrorRoughness) add<Mirror>(mirror);
-    else add<Gloss>(gloss);
+    add_round(fresnel, roughness);
   }
   if (max_component(material.sheen_color) > 0) add<Sheen>(material.sheen_color, material.sheen_roughness, rest_);
 }
@@ -77,10 +78,8 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
   if (frame && length2(material.axes.grain) > 0 && alpha_t >= kMirrorRoughness * kMirrorRoughness) {
     directed_ = true;
     add<AnisotropicGloss>(fresnel, AnisotropicGgx(alpha_t, alpha_b, frame->to_local(material.axes.grain)), rest_);
-  } else if (material.roughness < kMirrorRoughness) {
-    add<Mirror>(fresnel);
   } else {
-    add<Gloss>(fresnel, RoundGgx(alpha_b), rest_);
+    add_round(fresnel, material.roughness);
   }
 }
 

@@ -17,9 +17,9 @@ enum class Carries : std::uint8_t { radiance, flux };  ///< wo leads to the eye;
 /// A camera path that meets only the coat has the factor f_c(wi, wo) wi.n_c, as if n_c were the shading normal. Bsdf
 /// multiplies f by wi.n, the cosine to the normal of the surface below. So the lobe is
 ///     f(wi, wo) = f_c(wi, wo) (wi.n_c) / (wi.n),          wi: to the light.
-/// It is not symmetric, as nothing that uses shading normals is. For photons wo leads to the light, and the quotient is
-/// that of wo: the adjoint of Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3. Light from
-/// behind n_c is not reflected; it passes as much of the coat as grazing light.
+/// The lobe is not symmetric, because the shading normals differ. For photons wo leads to the light, and the factor is
+/// (wo.n_c) / (wo.n): the adjoint of Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3.
+/// Light from behind n_c is not reflected; it passes as much of the coat as grazing light.
 template <class Reflection>
 class Coat {
  public:

@@ -18,24 +18,20 @@ DielectricLobe::DielectricLobe(const MaterialValues& material, bool front, float
     rough_.emplace(ior, alpha, thin, front);
     light_share_behind_ = thin ? 0.5f : front ? 0.0f : 1.0f;
   }
-  pane_ = (thin || plate > 0) && !rough_;
-  if (pane_ && plate > 0) {
-    eta_ = 1;
-    const Rgb left = transmittance(material, plate);  // straight across
-    plate_ = Plate{front, ior, left};
-  }
+  pane_ = thin && !rough_;
+  if (plate > 0 && !rough_) plate_ = Plate{front, transmittance(material, plate)};
 }
 
 /// The shares that a plate reflects towards cos_o > 0 and lets pass towards it.
 DielectricLobe::Shares DielectricLobe::plate_shares(float cos_o) const {
   if (!plate_->outer) return {Rgb(0.0f), tint_};
   float cos_t;
-  const float f = fresnel_dielectric(cos_o, 1 / plate_->ior, cos_t);
+  const float f = fresnel_dielectric(cos_o, eta_reflected_, cos_t);
   Shares shares{Rgb(f), Rgb(0.0f)};
   if (!(f < 1)) return shares;
   for (int k = 0; k < 3; ++k) {
-    const float a = std::pow(plate_->across[k], 1 / std::abs(cos_t)),
-                once = (1 - f) * (1 - f) * a / (1 - f * f * a * a);
+    const float a = std::pow(plate_->across[k], 1 / std::abs(cos_t));
+    const float once = (1 - f) * (1 - f) * a / (1 - f * f * a * a);
     shares.passed[k] = tint_[k] * once;
     shares.reflected[k] += tint_[k] * tint_[k] * once * f * a;
   }
@@ -43,11 +39,7 @@ DielectricLobe::Shares DielectricLobe::plate_shares(float cos_o) const {
 }
 
 float DielectricLobe::reflectance(float cos_o) const {
-  if (plate_) {
-    const Shares shares = plate_shares(cos_o);
-    const float reflected = max_component(shares.reflected), passed = max_component(shares.passed);
-    return reflected > 0 ? reflected / (reflected + passed) : 0;
-  }
+  if (plate_) return plate_shares(cos_o).chance();
   float cos_t;
   return fresnel_dielectric(cos_o, eta_reflected_, cos_t);
 }
@@ -91,7 +83,7 @@ void DielectricLobe::sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const 
 
 void DielectricLobe::sample_plate(Vec3 wo, float u_lobe, LobeSample& s) const {
   const Shares shares = plate_shares(wo.z);
-  const float reflected = reflectance(wo.z);
+  const float reflected = shares.chance();
   s.delta = true;
   s.transmitted = s.straight = !(u_lobe < reflected);
   s.wi = s.transmitted ? -wo : Vec3{-wo.x, -wo.y, wo.z};

@@ -18,7 +18,7 @@ namespace tempolux {
 ///     R = F + tint^2 (1 - F)^2 F A^2 / (1 - F^2 A^2),    T = tint (1 - F)^2 A / (1 - F^2 A^2),
 /// where F is the Fresnel term at a face, the same at both, and A the transmittance of the way from face to face,
 /// thickness / cos_t. These are the sums over all reflections between the faces [Born & Wolf, without interference].
-/// The side that a ray meets from inside passes all light, tinted.
+/// The inner side transmits all light, tinted, and reflects none.
 class DielectricLobe {
  public:
   /// front: wo is outside of a solid. plate [m]: thickness of the plate, 0 for other glass.
@@ -47,11 +47,14 @@ class DielectricLobe {
  private:
   struct Plate {
     bool outer;  ///< the lobe is that of the outer side
-    float ior;
     Rgb across;  ///< transmittance of the glass straight across
   };
   struct Shares {
     Rgb reflected, passed;
+    float chance() const {  ///< probability with which sample() reflects
+      const float r = max_component(reflected);
+      return r > 0 ? r / (r + max_component(passed)) : 0;
+    }
   };
   Shares plate_shares(float cos_o) const;
   void sample_plate(Vec3 wo, float u_lobe, LobeSample& s) const;
@@ -61,7 +64,7 @@ class DielectricLobe {
   float eta_reflected_;  ///< for the Fresnel term: index on wo's side / index on the other side
   float eta_;            ///< for refraction: the same quotient, but 1 for a thin wall
   float light_share_behind_ = 0;
-  bool pane_;  ///< the wall is thin and smooth, or of a plate
+  bool pane_;  ///< the wall is thin and smooth
   std::optional<Plate> plate_;
   std::optional<RoughGlass> rough_;  ///< empty: the boundary is smooth
 };

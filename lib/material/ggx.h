@@ -32,17 +32,18 @@ inline float visibility(float cos_i, float cos_o, float alpha2) {
   return 0.5f / std::max(1e-20f, cos_o * smith_root(cos_i, alpha2) + cos_i * smith_root(cos_o, alpha2));
 }
 
-/// Draws a half vector with the pdf of visible normals, D(h) G1(wo) max(0, wo h) / cos_o [1/sr]; u in [0, 1)^2.
+/// Draws a half vector with the pdf of visible normals, D(h) G1(wo) max(0, wo h) / cos_o [1/sr], of GGX with the widths
+/// alpha_x and alpha_y along x and y; u in [0, 1)^2.
 /// Method: a uniform point of the spherical cap of directions into which the stretched view reflects. Heitz,
 /// "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018, with the mapping of Dupuy & Benyoub,
 /// "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), 2023.
-inline Vec3 sample_visible_normal(Vec3 wo, float alpha, Vec2 u) {
-  const Vec3 stretched = normalize(Vec3{wo.x * alpha, wo.y * alpha, wo.z});
+inline Vec3 sample_visible_normal(Vec3 wo, float alpha_x, float alpha_y, Vec2 u) {
+  const Vec3 stretched = normalize(Vec3{wo.x * alpha_x, wo.y * alpha_y, wo.z});
   const float phi = 2 * kPi * u.x;
   const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;
   const float r = std::sqrt(std::clamp(1 - z * z, 0.0f, 1.0f));
   const Vec3 h = Vec3{r * std::cos(phi), r * std::sin(phi), z} + stretched;
-  return normalize(Vec3{h.x * alpha, h.y * alpha, std::max(h.z, 1e-7f)});
+  return normalize(Vec3{h.x * alpha_x, h.y * alpha_y, std::max(h.z, 1e-7f)});
 }
 
 /// pdf [1/sr] of the direction wi = 2 (wo h) h - wo if h is drawn by sample_visible_normal:

@@ -13,6 +13,10 @@ namespace tempolux {
 /// True if the material is the boundary of a transparent solid (KHR_materials_volume).
 inline bool is_solid_glass(const MaterialValues& m) { return m.transmission > 0 && !m.thin_walled; }
 
+/// True if a path that passes the surface enters or leaves a solid of glass. Paths pass a plate (SurfacePoint::plate)
+/// straight and are never inside.
+inline bool bounds_solid(const MaterialValues& m, float plate) { return is_solid_glass(m) && !(plate > 0); }
+
 /// Transmittance of `distance` m inside the solid: attenuation_color^(distance / attenuation_distance) (Beer and
 /// Lambert, as in KHR_materials_volume). 1 for clear glass. Never NaN: a colour of 0 gives exactly 0.
 inline Rgb transmittance(const MaterialValues& m, float distance) {

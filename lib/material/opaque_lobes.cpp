@@ -1,6 +1,7 @@
 #include "lib/material/opaque_lobes.h"
 
 #include <algorithm>
+
 namespace tempolux {
 namespace {
 

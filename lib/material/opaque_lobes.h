@@ -60,7 +60,7 @@ class RoundGgx {
   float reflection(Vec3 wi, Vec3 wo, Vec3 h) const {
     return ggx::distribution(h, alpha2_) * ggx::visibility(wi.z, wo.z, alpha2_);
   }
-  Vec3 sample_normal(Vec3 wo, Vec2 u) const { return ggx::sample_visible_normal(wo, alpha_, u); }
+  Vec3 sample_normal(Vec3 wo, Vec2 u) const { return ggx::sample_visible_normal(wo, alpha_, alpha_, u); }
   float pdf_reflected(Vec3 h, Vec3 wo) const { return ggx::pdf_reflected(h, wo.z, alpha2_); }
 
  private:

@@ -97,7 +97,7 @@ Vec3 RoughGlass::sample(Vec3 wo, float u_lobe, Vec2 u) const {
     return {sin * std::cos(phi), sin * std::sin(phi), u_lobe < several * share_behind_ ? -cos : cos};
   }
   u_lobe = (u_lobe - several) / (1 - several);
-  const Vec3 h = ggx::sample_visible_normal(wo, alpha_, u);
+  const Vec3 h = ggx::sample_visible_normal(wo, alpha_, alpha_, u);
   const float cos_oh = std::clamp(dot(wo, h), 0.0f, 1.0f);
   float cos_t;
   if (u_lobe < fresnel_dielectric(cos_oh, eta_, cos_t)) {

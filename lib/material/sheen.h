@@ -30,8 +30,8 @@ Real sheen_formula(Real cos_i, Real cos_o, Real sin2_h, Real alpha) {
 ///     f = sheen_color D V / N(wi, wo),   N = max(1, E(wi), E(wo)),   E(w) = integral of D V cos.
 /// Below a roughness of .25, D V reflects more light than arrives at grazing angles: E is up to 3. N keeps the lobe
 /// reciprocal and its albedo at most 1; for other roughnesses it is 1, and f is that of the specification. Both E and
-/// the albedo for N come from a table. A roughness below kLeastRoughness, where the lobe lights nothing but a line, is
-/// raised to it.
+/// the albedo for N come from a table. Roughness below kLeastRoughness is raised to kLeastRoughness, since a narrower
+/// lobe lights only a line.
 class Sheen {
  public:
   static constexpr bool kDelta = false;

@@ -29,7 +29,7 @@ void read_sheen(const MaterialTextures& textures, const TextureSpot& spot, Mater
     values.sheen_roughness *= spot.read(textures.sheen_roughness, TextureTransfer::linear)[3];
 }
 
-/// Strength and direction of the anisotropy. Without tangents there is no direction, and the surface has none.
+/// Strength and direction of the anisotropy. Without tangents the grain stays zero, and the reflection is round.
 void read_grain(const MaterialTextures& textures, const TextureSpot& spot, Vec3 normal, MaterialValues& values) {
   Vec2 along{1, 0};
   if (textures.anisotropy) {
@@ -71,7 +71,7 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
   const Vec3 smooth = point.normal;
   if (textures.normal) point.normal = spot.bend(textures.normal, textures.normal_scale, smooth, point.normal_geometric);
   if (values.clearcoat > 0) read_coat(textures, spot, smooth, point, values);
-  read_sheen(textures, spot, values);
+  if (max_component(values.sheen_color) > 0) read_sheen(textures, spot, values);
   if (values.anisotropy > 0) read_grain(textures, spot, point.normal, values);
   values_ = &values;
 }

@@ -70,7 +70,9 @@ struct Arrival {
   Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
     const Vec3 out = geometric.to_local(travel), in = geometric.to_local(wi);
-    const auto by_geometric = [&] { return bsdf.in_frame(frame, geometric).eval_diffuse(out, in); };
+    const auto by_geometric = [&] {
+      return bsdf.in_frame(frame, geometric, [&](const Bsdf& turned) { return turned.eval_diffuse(out, in); });
+    };
     if (!(out.z > 0)) return Rgb(0.0f);
     const Vec3 shaded = frame.to_local(travel);
     const bool by_shading = shaded.z > kLooksAway;
@@ -92,11 +94,12 @@ struct Arrival {
   bool bent() const { return !flat && dot(normal, normal_geometric) < kBent; }
 
   /// An event S by the geometric normal. It counts only for directions from which a camera uses the geometric normal,
-  /// because the shading normal faces away from them (SeenSide). Black for other directions, and if D was drawn. Events by the
-  /// shading normal are added.
+  /// because the shading normal faces away from them (SeenSide). Black for other directions, and if D was drawn. These
+  /// events come in addition to those by the shading normal.
   Bsdf::Sample scatter_by_geometric_normal(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
-    Bsdf::Sample next = bsdf.in_frame(frame, geometric).sample(geometric.to_local(wi), u_lobe, u);
+    Bsdf::Sample next = bsdf.in_frame(
+        frame, geometric, [&](const Bsdf& turned) { return turned.sample(geometric.to_local(wi), u_lobe, u); });
     travel = geometric.to_world(next.wi);
     const float side = next.transmitted ? -1.0f : 1.0f;
     if (next.diffuse || side * dot(travel, normal) > kLooksAway) next.weight = Rgb(0.0f);
@@ -105,8 +108,8 @@ struct Arrival {
   }
 
   /// An event S for light from the image of wi (ShadingFrame): the adjoint of a camera path's event whose direction is
-  /// mirrored in the plane of the triangle. Black if wi has no image in a lobe, or if D was drawn. Events by the
-  /// shading normal are added.
+  /// mirrored in the plane of the triangle. Black if wi has no image in a lobe, or if D was drawn. These events come in
+  /// addition to those by the shading normal.
   Bsdf::Sample scatter_by_image(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     Bsdf::Sample next;
     const float geometric = dot(wi, normal_geometric);
@@ -123,18 +126,20 @@ struct Arrival {
 
 namespace {
 
-/// A surface whose material has textures or alpha, or which bounds a plate of glass. The constructor applies the normal map to the point.
+/// A surface whose Bsdf must be made at the hit: its material has textures or alpha, or it bounds a plate of glass. The
+/// constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
+  Arrival arrival;
   Bsdf bsdf;
   float coverage;  ///< share of photons that hit the surface there (alpha)
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
         material(frame, point),
-        bsdf(material, dot(point.normal_geometric, travel) < 0, Arrival(point, travel).frame, Carries::flux,
-             point.plate),
+        arrival(point, travel),
+        bsdf(material, dot(point.normal_geometric, travel) < 0, arrival.frame, Carries::flux, point.plate),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
@@ -427,8 +432,8 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   const Vec3 travel = path.ray.direction;
   if (varies_[point.material] || point.plate > 0) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, travel);
-    return scatter_at(path, {{point, travel}, point, distance, textured.bsdf, textured.coverage, textured.smooth}, draw,
-                      batch);
+    return scatter_at(path, {textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth},
+                      draw, batch);
   }
   const bool front = dot(point.normal_geometric, travel) < 0;
   return scatter_at(path, {{point, travel}, point, distance, bsdfs_[point.material][front], 1, point.normal}, draw,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <optional>
 
 #include "lib/core/halton.h"
 #include "lib/core/parallel_each.h"
@@ -21,73 +23,70 @@ constexpr std::uint64_t kLeastPathsOfLight = 1024;
 constexpr std::size_t kFewestPhotons = 1000;
 constexpr std::uint64_t kMostTimes = 16;
 
-/// The file's index of the node of each slot of the table; formats::ViewLight::kEnvironment for the environment.
-std::vector<std::uint32_t> nodes_of_slots(const SceneFrame& frame, const EmissionTable& table) {
-  const auto in_file = [&](std::uint32_t node) {
-    return frame.scene && node < frame.scene->nodes.size() ? frame.scene->nodes[node].source_index : node;
+/// Light i of a pilot is a node: slots of the emission table that share their part of the photons by flux.
+struct NodesOfSlots {
+  std::vector<std::uint32_t> node;         ///< by slot: index in the file, or formats::ViewLight::kEnvironment
+  std::map<std::uint32_t, double> shares;  ///< by node: sum of the probabilities of its slots, if above 0
+
+  NodesOfSlots(const SceneFrame& frame, const EmissionTable& table) {
+    const auto in_file = [&](std::uint32_t n) {
+      return frame.scene && n < frame.scene->nodes.size() ? frame.scene->nodes[n].source_index : n;
+    };
+    for (std::size_t i = 0; i < table.surfaces.size(); ++i)
+      node.insert(node.end(), table.parts[i]->all().size(), in_file(frame.surfaces[table.surfaces[i]].node));
+    for (const PlacedLight& light : frame.lights) node.push_back(in_file(light.node));
+    if (table.environment) node.push_back(formats::ViewLight::kEnvironment);
+    for (std::size_t slot = 0; slot < node.size(); ++slot)
+      if (table.probability[slot] > 0) shares[node[slot]] += table.probability[slot];
+  }
+};
+
+/// An estimate of the direct light that each node brings to the cells: sum of share of the flux / (4 pi d^2), d at
+/// least the cell's radius. Infinite for distant lights, which shine everywhere.
+std::map<std::uint32_t, double> rough_importance(const SceneFrame& frame, const EmissionTable& table,
+                                                 const NodesOfSlots& nodes, std::span<const AimSphere> cells) {
+  std::map<std::uint32_t, double> importance;
+  std::size_t slot = 0;
+  const auto add = [&](Vec3d place) {
+    double sum = 0;
+    for (const AimSphere& cell : cells)
+      sum += cell.weight / (4 * kPiD * std::max(length2(cell.centre - place), cell.radius * cell.radius));
+    importance[nodes.node[slot]] += table.probability[slot] * sum;
+    ++slot;
   };
-  std::vector<std::uint32_t> nodes;
-  for (std::size_t i = 0; i < table.surfaces.size(); ++i)
-    nodes.insert(nodes.end(), table.parts[i]->all().size(), in_file(frame.surfaces[table.surfaces[i]].node));
-  for (const PlacedLight& light : frame.lights) nodes.push_back(in_file(light.node));
-  if (table.environment) nodes.push_back(formats::ViewLight::kEnvironment);
-  return nodes;
-}
-
-std::map<std::uint32_t, double> share_of_nodes(const EmissionTable& table, std::span<const std::uint32_t> nodes) {
-  std::map<std::uint32_t, double> shares;
-  for (std::size_t slot = 0; slot < nodes.size(); ++slot)
-    if (table.probability[slot] > 0) shares[nodes[slot]] += table.probability[slot];
-  return shares;
-}
-
-/// An estimate of the direct light that a slot brings to the cells, by which the lights are chosen that the pilot
-/// measures: share of the flux / (4 pi d^2), d at least the cell's radius. Distant lights shine everywhere.
-double rough_importance(const SceneFrame& frame, const EmissionTable& table, std::size_t slot,
-                        std::span<const AimSphere> cells) {
-  std::size_t triangles = 0;
-  Vec3d place;
   for (std::size_t i = 0; i < table.surfaces.size(); ++i) {
-    const auto& parts = table.parts[i]->all();
-    if (slot - triangles < parts.size()) {
-      const Surface& surface = frame.surfaces[table.surfaces[i]];
-      place = Vec3d(surface.position(surface.primitive->triangles[parts[slot - triangles].triangle][0]));
-      triangles = slot + 1;
-      break;
-    }
-    triangles += parts.size();
+    const Surface& surface = frame.surfaces[table.surfaces[i]];
+    for (const EmissionPart& part : table.parts[i]->all())
+      add(Vec3d(surface.position(surface.primitive->triangles[part.triangle][0])));
   }
-  if (triangles <= slot) {
-    if (slot - triangles >= frame.lights.size() ||
-        frame.lights[slot - triangles].light.kind == PunctualLight::Kind::directional)
-      return INFINITY;
-    place = Vec3d(frame.lights[slot - triangles].position);
+  for (const PlacedLight& placed : frame.lights) {
+    if (placed.light.distant()) importance[nodes.node[slot++]] = INFINITY;
+    else add(Vec3d(placed.position));
   }
-  double sum = 0;
-  for (const AimSphere& cell : cells) {
-    const Vec3d to = cell.centre - place;
-    sum += cell.weight / (4 * kPiD * std::max(dot(to, to), cell.radius * cell.radius));
-  }
-  return table.probability[slot] * sum;
+  if (table.environment) importance[nodes.node[slot]] = INFINITY;
+  return importance;
 }
 
 /// The nodes that the pilot measures: all, or the kMaxViewLights most important ones.
 std::vector<std::uint32_t> measured_nodes(const SceneFrame& frame, const EmissionTable& table,
-                                          std::span<const std::uint32_t> nodes, std::span<const AimSphere> cells) {
+                                          const NodesOfSlots& nodes, std::span<const AimSphere> cells) {
   std::vector<std::uint32_t> measured;
-  for (const auto& [node, share] : share_of_nodes(table, nodes)) measured.push_back(node);
+  for (const auto& [node, share] : nodes.shares) measured.push_back(node);
   if (measured.size() <= formats::kMaxViewLights) return measured;
-  std::map<std::uint32_t, double> importance;
-  for (std::size_t slot = 0; slot < nodes.size(); ++slot)
-    if (table.probability[slot] > 0) importance[nodes[slot]] += rough_importance(frame, table, slot, cells);
+  const std::map<std::uint32_t, double> importance = rough_importance(frame, table, nodes, cells);
   std::ranges::stable_sort(measured, std::greater(), [&](std::uint32_t node) { return importance.at(node); });
   measured.resize(formats::kMaxViewLights);
   return measured;
 }
 
-bool holds(const AimSphere& cell, Vec3d point) {
-  const Vec3d to = point - cell.centre;
-  return dot(to, to) < cell.radius * cell.radius;
+/// The table with as many paths for each of these lights as for the others.
+EmissionTable alike(EmissionTable table, const NodesOfSlots& nodes, std::span<const std::uint32_t> lights) {
+  for (std::size_t slot = 0; slot < nodes.node.size(); ++slot) {
+    const std::uint32_t node = nodes.node[slot];
+    double& p = table.probability[slot];
+    p = p > 0 && std::ranges::count(lights, node) ? p / (nodes.shares.at(node) * double(lights.size())) : 0;
+  }
+  return table;
 }
 
 /// True if one of kTests places, chosen by `number`, sees the photon: photons on the outside of a wall or in the next
@@ -114,82 +113,98 @@ struct Arrivals {
   std::size_t photons = 0;           ///< in all cells
 
   explicit Arrivals(std::size_t size) : flux(size), square(size) {}
+  void add(std::size_t at, double of_photon) {
+    flux[at] += of_photon;
+    square[at] += of_photon * of_photon;
+    ++photons;
+  }
+  void add(const Arrivals& other) {
+    photons += other.photons;
+    for (std::size_t i = 0; i < flux.size(); ++i) flux[i] += other.flux[i], square[i] += other.square[i];
+  }
 };
+
+/// Cells and the places that are seen in each.
+struct SeenCells {
+  std::vector<AimSphere> cells;
+  std::span<const std::vector<WeighedPlace>> places;
+};
+
+/// Traces the paths and counts what arrives in the cells. `light_of_slot`: index of the light of each slot.
+Arrivals arrivals(const PhotonTracer& photons, const Lights& lights, const Tracer& tracer,
+                  std::span<const std::size_t> light_of_slot, const SeenCells& seen) {
+  constexpr std::uint64_t kBatch = PhotonTracer::kBatch;
+  const std::size_t count = std::ranges::max(light_of_slot) + 1, size = seen.cells.size() * count;
+  const std::uint64_t paths = photons.photon_count();
+  const PhotonHalton halton(photons.seed());
+  std::vector<Arrivals> batches((paths + kBatch - 1) / kBatch, Arrivals(size));
+  parallel_each(batches.size(), 1, [&](std::size_t b) {
+    std::vector<std::uint64_t> numbers(std::min(kBatch, paths - b * kBatch));
+    std::iota(numbers.begin(), numbers.end(), b * kBatch);
+    const PhotonBatch batch = photons.trace_paths(numbers);
+    for (std::size_t i = 0; i < batch.block.photons.size(); ++i) {
+      const formats::Photon& photon = batch.block.photons[i];
+      std::optional<std::size_t> light;
+      for (std::size_t k = 0; k < seen.cells.size(); ++k) {
+        if (seen.places[k].empty() || !seen.cells[k].holds(Vec3d(vec_of(photon.position))) ||
+            !is_seen(tracer, seen.places[k], photon, b * kBatch + i))
+          continue;
+        if (!light) light = light_of_slot[lights.emit(halton.point(numbers[batch.path_of[i]])).slot];
+        batches[b].add(k * count + *light, emission_weight(Rgbd(Rgb(photon.flux[0], photon.flux[1], photon.flux[2]))));
+      }
+    }
+  });
+  Arrivals all(size);
+  for (const Arrivals& batch : batches) all.add(batch);
+  return all;
+}
 
 }  // namespace
 
 SharePilot::SharePilot(std::vector<formats::ViewSphere> cells, std::span<const WeighedPlace> places, std::string kinds)
     : cells_(std::move(cells)), places_(cells_.size()), kinds_(std::move(kinds)) {
-  for (std::size_t k = 0; k < cells_.size(); ++k)
-    for (const WeighedPlace& place : places)
-      if (holds({vec_of(cells_[k].centre), cells_[k].radius}, place.position)) places_[k].push_back(place);
   double sum = 0;
-  for (const formats::ViewSphere& cell : cells_) sum += cell.weight;
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    const AimSphere cell{vec_of(cells_[k].centre), cells_[k].radius};
+    std::ranges::copy_if(places, std::back_inserter(places_[k]),
+                         [&](const WeighedPlace& place) { return cell.holds(place.position); });
+    sum += cells_[k].weight;
+  }
   for (formats::ViewSphere& cell : cells_) cell.weight /= sum;
+}
+
+bool has_several_lights(const SceneFrame& frame, const EmissionTable& table) {
+  return NodesOfSlots(frame, table).shares.size() > 1;
 }
 
 void SharePilot::look(const Tracer& tracer, const EmissionTable& table) {
   const SceneFrame& frame = tracer.frame();
-  const std::vector<AimSphere> cells = spheres_in_scene(cells_, frame.origin);
-  const std::vector<std::uint32_t> nodes = nodes_of_slots(frame, table);
-  const std::map<std::uint32_t, double> before = share_of_nodes(table, nodes);
-  const std::vector<std::uint32_t> lights = measured_nodes(frame, table, nodes, cells);
-  if (lights.size() < 2 || cells.empty()) return;
-  std::map<std::uint32_t, std::size_t> index;
-  for (std::size_t i = 0; i < lights.size(); ++i) index[lights[i]] = i;
-
-  EmissionTable equal = table;  // every light gets as many paths
-  for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
-    const bool measured = table.probability[slot] > 0 && index.contains(nodes[slot]);
-    equal.probability[slot] =
-        measured ? table.probability[slot] / (before.at(nodes[slot]) * double(lights.size())) : 0;
+  const SeenCells seen{spheres_in_scene(cells_, frame.origin), places_};
+  const NodesOfSlots nodes(frame, table);
+  const std::vector<std::uint32_t> lights = measured_nodes(frame, table, nodes, seen.cells);
+  if (lights.size() < 2 || cells_.empty()) return;
+  std::vector<std::size_t> light_of_slot;  // 0 for slots that emit nothing
+  for (const std::uint32_t node : nodes.node) {
+    const auto found = std::ranges::find(lights, node);
+    light_of_slot.push_back(found == lights.end() ? 0 : std::size_t(found - lights.begin()));
   }
-  const Lights emitters(frame, equal);
+  const Lights emitters(frame, alike(table, nodes, lights));
+  PhotonOptions options{.group_count = 1};
+  options.set_kinds(kinds_);
+  options.store_volume = false;
+  options.photon_count = std::max(kPilotPaths, kLeastPathsOfLight * lights.size());
   Arrivals all(0);
-  std::uint64_t paths = std::max(kPilotPaths, kLeastPathsOfLight * lights.size());
-  for (std::uint64_t times = 1; times <= kMostTimes && all.photons < kFewestPhotons; times *= 4, paths *= 4) {
-    PhotonOptions options{.seed = 0, .photon_count = paths, .group_count = 1};
-    options.set_kinds(kinds_);
-    options.store_volume = false;
-    const PhotonTracer photons(tracer, emitters, options);
-    const PhotonHalton halton(options.seed);
-    constexpr std::uint64_t kBatch = PhotonTracer::kBatch;
-    std::vector<Arrivals> batches((paths + kBatch - 1) / kBatch, Arrivals(cells.size() * lights.size()));
-    parallel_each(batches.size(), 1, [&](std::size_t b) {
-      std::vector<std::uint64_t> numbers(std::min(kBatch, paths - b * kBatch));
-      std::iota(numbers.begin(), numbers.end(), b * kBatch);
-      const PhotonBatch batch = photons.trace_paths(numbers);
-      for (std::size_t i = 0; i < batch.block.photons.size(); ++i) {
-        const formats::Photon& photon = batch.block.photons[i];
-        const Rgbd flux(Rgb(photon.flux[0], photon.flux[1], photon.flux[2]));
-        const double weight = std::max(luminance(flux), 0.05 * max_component(flux));
-        std::size_t light = lights.size();
-        for (std::size_t k = 0; k < cells.size(); ++k) {
-          if (places_[k].empty() || !holds(cells[k], Vec3d(vec_of(photon.position))) ||
-              !is_seen(tracer, places_[k], photon, b * kBatch + i))
-            continue;
-          if (light == lights.size())
-            light = index.at(nodes[emitters.emit(halton.point(numbers[batch.path_of[i]])).slot]);
-          batches[b].flux[k * lights.size() + light] += weight;
-          batches[b].square[k * lights.size() + light] += weight * weight;
-          ++batches[b].photons;
-        }
-      }
-    });
-    all = Arrivals(cells.size() * lights.size());
-    for (const Arrivals& batch : batches) {
-      all.photons += batch.photons;
-      for (std::size_t i = 0; i < all.flux.size(); ++i)
-        all.flux[i] += batch.flux[i], all.square[i] += batch.square[i];
-    }
+  for (std::uint64_t times = 1; times <= kMostTimes && all.photons < kFewestPhotons; times *= 4) {
+    all = arrivals(PhotonTracer(tracer, emitters, options), emitters, tracer, light_of_slot, seen);
+    options.photon_count *= 4;
   }
-  before_ = before;
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    double flux = 0;
-    for (std::size_t i = 0; i < lights.size(); ++i) flux += all.flux[k * lights.size() + i];
+  before_ = nodes.shares;
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    const auto row = std::span(all.flux).subspan(k * lights.size(), lights.size());
+    const double flux = std::accumulate(row.begin(), row.end(), 0.0);
     if (!(flux > 0)) continue;
     for (std::size_t i = 0; i < lights.size(); ++i)
-      squares_[lights[i]] += cells[k].weight * all.square[k * lights.size() + i] / (flux * flux);
+      squares_[lights[i]] += cells_[k].weight * all.square[k * lights.size() + i] / (flux * flux);
   }
 }
 
@@ -214,18 +229,18 @@ std::vector<formats::ViewLight> SharePilot::shares() const {
 }
 
 void give_shares(const SceneFrame& frame, std::span<const formats::ViewLight> shares, EmissionTable& table) {
-  const std::vector<std::uint32_t> nodes = nodes_of_slots(frame, table);
-  const std::map<std::uint32_t, double> before = share_of_nodes(table, nodes);
+  if (shares.empty()) return;
+  const NodesOfSlots nodes(frame, table);
   std::map<std::uint32_t, double> wanted;
   double sum = 0;
   for (const formats::ViewLight& light : shares)
-    if (before.contains(light.node)) wanted[light.node] += light.share, sum += light.share;
+    if (nodes.shares.contains(light.node)) wanted[light.node] += light.share, sum += light.share;
   if (!(sum > 0)) return;
-  for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
+  for (std::size_t slot = 0; slot < nodes.node.size(); ++slot) {
     double& p = table.probability[slot];
     if (!(p > 0)) continue;
-    const auto found = wanted.find(nodes[slot]);
-    const double guided = found == wanted.end() ? 0 : found->second / sum * p / before.at(nodes[slot]);
+    const auto found = wanted.find(nodes.node[slot]);
+    const double guided = found == wanted.end() ? 0 : found->second / sum * p / nodes.shares.at(nodes.node[slot]);
     p = double(kUnguidedShare) * p + (1 - double(kUnguidedShare)) * guided;
   }
 }

@@ -17,9 +17,10 @@ namespace tempolux {
 /// Measures how the photons of a map are best shared out among the lights (docs/methods/aim.md, "Shares of lights").
 /// Lights of one node share their part by flux.
 ///
-/// A pilot traces few paths of every light. Let cell k hold the share c_k of what cameras see, E_k be the flux that
-/// arrives in the cell at surfaces which the seen places of the cell look at, and s_ik^2 the mean over the paths of light i, which carry the light's whole flux, of their
-/// squared flux in the cell. N paths with the shares p_i estimate the light of the cells with the mean relative variance
+/// A pilot traces few paths of every light. Cell k holds the share c_k of what cameras see. Photons count in the cell
+/// if a seen place of the cell looks at them. Let E_k be their flux, and s_ik^2 the mean over the paths of light i,
+/// which carry the light's whole flux, of their squared flux in the cell. N paths with the shares p_i estimate the
+/// light of the cells with the mean relative variance
 ///     V = (1 / N) sum_k c_k sum_i s_ik^2 / (p_i E_k^2).
 /// V is least if p_i is in proportion to the root of sum_k c_k s_ik^2 / E_k^2.
 class SharePilot {
@@ -27,8 +28,8 @@ class SharePilot {
   /// cells: seen_spheres() of the places. kinds: of the map's photons, as for PhotonOptions::set_kinds.
   SharePilot(std::vector<formats::ViewSphere> cells, std::span<const WeighedPlace> places, std::string kinds);
 
-  /// Adds the pilot of a frame. `table`: of the frame's segment, with aim if the map's photons are aimed. No work with a
-  /// single light. The same result for any number of threads.
+  /// Adds the pilot of a frame. The table belongs to the frame's segment and has aim if the map's photons are aimed. No
+  /// work with a single light. The same result for any number of threads.
   void look(const Tracer& tracer, const EmissionTable& table);
 
   /// Shares by node. Empty if fewer than two lights matter, or if V is less than kLeastGain times better than with the
@@ -42,6 +43,9 @@ class SharePilot {
   std::map<std::uint32_t, double> squares_;  ///< by node: sum over frames and cells of c_k s_ik^2 / E_k^2
   std::map<std::uint32_t, double> before_;   ///< by node: its share in the last table
 };
+
+/// True if two nodes of the frame, or a node and the environment, may emit photons, so that shares matter.
+bool has_several_lights(const SceneFrame& frame, const EmissionTable& table);
 
 /// Gives the lights of each node their share of the photons. kUnguidedShare of the photons stay shared out as in the
 /// table, for light that the pilot cannot know. Lights that are not listed get photons from this part only. Nothing

@@ -43,9 +43,9 @@ void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, in
 /// Spheres around cells of space that hold what cameras see.
 struct SeenSpheres {
   std::vector<formats::ViewSphere> spheres;  ///< sorted by place
-  /// True if aim makes photons at least twice as dense. At each place the density of photons aimed at the place's sphere
-  /// (Aim) is compared with that of photons that are uniform on the scene's disc. The geometric mean of the ratio over
-  /// all places decides. Reasons: docs/methods/aim.md.
+  /// True if aim makes photons at least twice as dense. At each place the density of photons aimed at the place's
+  /// sphere (Aim) is compared with that of photons that are uniform on the scene's disc. The geometric mean of the
+  /// ratio over all places decides. Reasons: docs/methods/aim.md.
   bool worth_aiming = false;
 };
 
@@ -71,8 +71,8 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
 /// (photon_shares.h). `kinds`: the kinds of photons that are wanted, as for PhotonOptions::set_kinds.
 void aim_at_seen(const Tracer& tracer, const CameraView& view, const std::string& kinds, EmissionTable& table);
 
-/// Lights whose photons are aimed at the spheres; their shares follow from flux, since the pilot of shares would cost as
-/// much as the audit of a frame. `which`: as for Lights.
+/// Lights whose photons are aimed at the spheres; their shares follow from flux, since the pilot of shares would cost
+/// as much as the audit of a frame. `which`: as for Lights.
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view,
                     Lights::Which which = Lights::Which::all);
 

@@ -34,7 +34,8 @@ class Spread {
         sample_error_(asked.sample_error * std::pow(asked.samples, 1 - stratified_rate())) {}
 
   double error(const SpreadWork& with) const {
-    return kSamplesSeen * sample_error_ * std::pow(with.samples, -kFiltered) + seen_map_error(rough_, asked_.pixels, with.photons) +
+    return kSamplesSeen * sample_error_ * std::pow(with.samples, -kFiltered) +
+           seen_map_error(rough_, asked_.pixels, with.photons) +
            (with.rays > 0 ? kRecordsSeen * asked_.ray_error / with.rays : 0);
   }
   double work(const SpreadWork& with) const {

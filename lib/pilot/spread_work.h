@@ -36,12 +36,14 @@ struct SpreadWork {
   std::uint64_t photons = 0;
 };
 
-/// The numbers with the least work whose seen error is at most that of `asked`. Of samples the share is 2^(-i/4), at
-/// least 1/8 and 4 samples a pixel; light paths are doubled, rays are halved, doubled or quadrupled. The seen error is
+/// The numbers with the least work whose seen error is at most that of `asked`. The share s of the samples is 2^(-i/4);
+/// it is at least 1/8 and leaves at least 4 samples a pixel. Light paths are doubled; rays are halved, doubled or
+/// quadrupled. The seen error is
 ///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays.
-/// E is the squared error of the samples; n stratified samples leave n^(1-r) times the error of independent ones
-/// (stratified_rate()). s is their share. e: error of records at one ray. The factors are squared errors of boxes of 1,
-/// 5 and 15 pixels together over those of single pixels (docs/methods/ways.md).
+/// E is the squared error of the asked samples; n stratified samples leave n^(1-r) times the error of independent ones
+/// (stratified_rate()). e is the squared error of records at one ray. The seen error adds the squared errors of boxes
+/// of 1, 5 and 15 pixels. 1.24 and 2.1 are the ratios of this sum to the squared error of single pixels, measured for
+/// samples and for records (docs/methods/ways.md).
 SpreadWork spread_work(const RoughFrame& rough, const AskedPicture& asked);
 
 }  // namespace tempolux

@@ -216,9 +216,8 @@ bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const
   // Mean and standard error of log(score of the shot's way / score of the best way) over the frames.
   double n = 0, sum = 0, squares = 0;
   for (const Look& look : looks) {
-    const Way *const shots = find_way(look.ways, shot.indirect, shot.caustic_map), *const bests =
-                                                                                       find_way(look.ways, best->method,
-                                                                                                best->map);
+    const Way* const shots = find_way(look.ways, shot.indirect, shot.caustic_map);
+    const Way* const bests = find_way(look.ways, best->method, best->map);
     if (!shots || !bests) continue;
     const double ratio = std::log(std::max(shots->score(), 1e-300) / std::max(bests->score(), 1e-300));
     n += 1;
@@ -363,23 +362,30 @@ std::string view_of(const std::vector<int>& frames, const std::string& kinds, co
                     const SceneSource& source, StaticTree& tree) {
   SeenAround around;
   double radius = 0;
-  std::set<std::string> cameras;
-  std::vector<int> looked;
-  for (const int number : spread(frames)) {
+  std::set<std::string> cameras, states;
+  const std::vector<int> some = spread(frames);
+  for (const int number : some) {
     const SceneFrame frame = source.at(number, false);
     const PlacedCamera camera = frame.camera(source.camera_node);
     if (!cameras.insert(pinhole_hash(camera)).second) continue;
-    radius = std::max(radius, source.emission(frame.frame).sphere_radius);
+    const EmissionTable table = source.emission(frame.frame);
+    radius = std::max(radius, table.sphere_radius);
     look_around(Tracer(frame, tree), camera, wish.width, wish.height, around);
-    looked.push_back(number);
+    // Only photons of distant light are aimed, and only those of several lights have shares. Else the aim serves the
+    // points alone, and the first picture decides whether the scene is large enough for an aim.
+    if (number == frames.front() && !frame.scene->has_distant_light() && !has_several_lights(frame, table) &&
+        !seen_spheres(around.places, radius).worth_aiming)
+      return "";
   }
   SeenSpheres seen = seen_spheres(around.places, radius);
   SharePilot pilot(seen.spheres, around.places, kinds);
-  for (const int number : {looked.front(), looked[looked.size() / 2], looked.back()}) {
+  for (const int number : {some.front(), some[some.size() / 2], some.back()}) {
     const SceneFrame frame = source.at(number, false);
+    const SceneHashes& hashes = frame.hashes;
+    if (!states.insert(hash_of_texts({hashes.moving_geometry, hashes.materials, hashes.lights})).second) continue;
     EmissionTable table = source.emission(number);
     if (seen.worth_aiming) table.aim = spheres_in_scene(seen.spheres, frame.origin);
-    pilot.look(Tracer(frame, tree), table);
+    if (has_several_lights(frame, table)) pilot.look(Tracer(frame, tree), table);
   }
   if (!seen.worth_aiming) seen.spheres.clear();
   const formats::View view{std::move(seen.spheres), pilot.shares()};

@@ -94,18 +94,19 @@ int GraphBuilder::clamped(int frame) const { return std::clamp(frame, 0, plan.la
 
 Command GraphBuilder::at(int frame) const { return {"--frame " + std::to_string(frame), {}, state(frame).light}; }
 
-std::string GraphBuilder::cameras(const std::vector<int>& frames) const {
+std::string GraphBuilder::hash_of(std::string PlannedFrame::*member, const std::vector<int>& frames) const {
   Hasher hasher;
   hasher.add(wish.camera);
-  for (const int frame : frames) hasher.add(std::string_view(state(frame).camera));
+  for (const int frame : frames) hasher.add(std::string_view(state(frame).*member));
   return hasher.hex();
 }
 
+std::string GraphBuilder::cameras(const std::vector<int>& frames) const {
+  return hash_of(&PlannedFrame::camera, frames);
+}
+
 std::string GraphBuilder::pinholes(const std::vector<int>& frames) const {
-  Hasher hasher;
-  hasher.add(wish.camera);
-  for (const int frame : frames) hasher.add(std::string_view(state(frame).pinhole));
-  return hasher.hex();
+  return hash_of(&PlannedFrame::pinhole, frames);
 }
 
 std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames, const Command& command) {

@@ -65,6 +65,9 @@ struct GraphBuilder {
   std::string add_state(const char* concern, int first, const std::string& content);
   /// Returns the name that `make` returns for this key. Calls `make` only the first time that a key is asked for.
   std::string once(const std::string& key, const std::function<std::string()>& make);
+
+ private:
+  std::string hash_of(std::string PlannedFrame::*member, const std::vector<int>& frames) const;
 };
 
 /// True if the options, which are separated by blanks, contain the word; if the channels, which are separated by

@@ -59,6 +59,8 @@ std::string shutter_hash(const SceneFrame& state, const ShutterTimes& times, int
   constexpr int kStates = 5;
   const Scene& scene = *state.scene;
   const Segment segment = segment_between(scene, times.first_step(), times.last_step(), times.options);
+  const auto moves = [](std::uint8_t moved) { return moved != 0; };
+  if (segment.changes.empty() && std::ranges::none_of(segment.node_moves, moves)) return "";
   const SegmentScene stage(scene, segment, times.options);
   std::vector<std::string> states;
   for (int i = 0; i < kStates; ++i) {
@@ -83,9 +85,9 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   try {
     frame.view = state.camera(camera_node);
     frame.camera = camera_hash(*frame.view);
+    frame.pinhole = pinhole_hash(*frame.view);
     const std::string blur = shutter_hash(state, ShutterTimes(frame.view->camera, state.frame, time), camera_node);
     if (!blur.empty()) frame.camera = hash_of_texts({frame.camera, blur});
-    frame.pinhole = pinhole_hash(*frame.view);
   } catch (const InputError&) {  // The camera has no direction. The tools report it if this frame is requested.
   }
   if (media) frame.media = media(number);
@@ -121,7 +123,7 @@ void share_in_segment(PlannedSegment& segment) {
   }
 }
 
-/// The last frame at which the lists of a camera's lens may change; 0: they do not.
+/// The last frame at which the lists of a camera's lens may change; 0 if the lists do not change.
 int last_of_lens(const Node& camera) {
   if (!camera.camera_extras.changes()) return 0;
   const auto longest = std::ranges::max_element(camera.camera_extras.lists, {}, &std::vector<double>::size);
@@ -228,28 +230,26 @@ std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan,
   return pieces;
 }
 
+/// The different values of a member, ascending; with `lit` only in that state of light.
+std::vector<int> values_of(const PlannedSegment& segment, int PlannedFrame::*member, std::optional<int> lit) {
+  std::set<int> values;
+  for (const PlannedFrame& frame : segment.frames)
+    if (!lit || frame.lit_frame == *lit) values.insert(frame.*member);
+  return {values.begin(), values.end()};
+}
+
 }  // namespace
 
 const PlannedFrame& PlannedSegment::at(int frame) const { return frames.at(std::size_t(frame - first)); }
 
-std::vector<int> PlannedSegment::states() const {
-  std::set<int> values;
-  for (const PlannedFrame& frame : frames) values.insert(frame.lit_frame);
-  return {values.begin(), values.end()};
-}
+std::vector<int> PlannedSegment::states() const { return values_of(*this, &PlannedFrame::lit_frame, {}); }
 
 std::vector<int> PlannedSegment::pictures(std::optional<int> lit) const {
-  std::set<int> values;
-  for (const PlannedFrame& frame : frames)
-    if (!lit || frame.lit_frame == *lit) values.insert(frame.picture);
-  return {values.begin(), values.end()};
+  return values_of(*this, &PlannedFrame::picture, lit);
 }
 
 std::vector<int> PlannedSegment::views(std::optional<int> lit) const {
-  std::set<int> values;
-  for (const PlannedFrame& frame : frames)
-    if (!lit || frame.lit_frame == *lit) values.insert(frame.viewed);
-  return {values.begin(), values.end()};
+  return values_of(*this, &PlannedFrame::viewed, lit);
 }
 
 bool PlannedSegment::is_blurred() const {

@@ -32,8 +32,7 @@ float received_share(Vec3 wi, Vec3 normal, const LitSurface& at) {
   const Vec3 turned = wi + once + cross(axis, once) * (1 / std::max(kMinCos, 1 + dot(normal, at.smooth)));  // Rodrigues
   const float cosine = dot(turned, at.shading);
   if (!(cosine > 0)) return 0;
-  return cosine / std::max(kLooksAway, dot(wi, normal)) *
-         (at.bsdf ? at.bsdf->arrival_weight(turned, at.shading) : 1);
+  return cosine / std::max(kLooksAway, dot(wi, normal)) * (at.bsdf ? at.bsdf->arrival_weight(turned, at.shading) : 1);
 }
 
 FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photons, const FootprintOptions& options,

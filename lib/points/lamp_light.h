@@ -29,10 +29,10 @@ struct LampPhoton {
 inline constexpr float kBesideLamp = PointLookup::kReach;
 
 /// Emits 2^15 photons of kind direct and returns those that land within kBesideLamp spacings of their lamp. If fewer
-/// than 2^10 land but some do, emits up to 2^18. Every lamp gets photons (Lights::placed_alike), also beside a sun: else
-/// gather rays would leave out light that no photon brings. The sum of the photons' flux over
-/// an area, in the mean over seeds, is the flux that the area receives from such close lamps. Costs one short ray per
-/// photon. Same result for any number of threads. `points` may be empty; its spacing decides which photons land.
+/// than 2^10 land but some do, emits up to 2^18. Every lamp gets photons (Lights::placed_alike), also beside a sun:
+/// else gather rays would leave out light that no photon brings. The sum of the photons' flux over an area, in the mean
+/// over seeds, is the flux that the area receives from such close lamps. Costs one short ray per photon. Same result
+/// for any number of threads. `points` may be empty; its spacing decides which photons land.
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                                              std::uint64_t seed = 0);
 

@@ -35,9 +35,8 @@ void blur_albedo(const RenderScene& scene, const CameraView& view, const Shutter
     Rgb sum(0.0f);
     for (std::uint32_t i = 0; i < std::uint32_t(kAlbedoRays); ++i) {
       const PixelRandom random(kKey, p, i);
-      const Moment* const moment = shutter ? &shutter->at(random.get1(1, Purpose::lens)) : nullptr;
-      const CameraView& now = moment ? moment->view() : view;
-      sum += albedo_along(moment ? moment->scene() : scene, now, sample_of_pixel(now, x, y, random));
+      const auto [now, through] = seen_now({scene, view}, shutter, random);
+      sum += albedo_along(now, through, sample_of_pixel(through, x, y, random));
     }
     const Rgb mean = sum * (1.0f / float(kAlbedoRays));
     planes[0][p] = mean.r, planes[1][p] = mean.g, planes[2][p] = mean.b;

@@ -10,9 +10,10 @@ namespace tempolux {
 class Shutter;
 
 /// Replaces the channels albedo.* of a blurred picture, if it has them, by means over the pixel, the lens and the time
-/// that the shutter is open, as colour is such a mean. Colour over the albedo of one sharp ray would have the sharp
-/// texture in it, and a filter of this quotient would print the texture into the blur. Where a ray meets no surface its
-/// albedo is 0. Takes kAlbedoRays rays a pixel. The rays do not depend on seed or frame. shutter: may be null.
+/// that the shutter is open, as colour is such a mean. A filter divides colour by albedo. If the albedo came from one
+/// sharp ray, the quotient would hold the sharp texture, and the filter would print it into the blur. The albedo of a
+/// ray that meets no surface is 0. Takes kAlbedoRays rays a pixel. The rays do not depend on seed or frame. shutter:
+/// may be null.
 void blur_albedo(const RenderScene& scene, const CameraView& view, const Shutter* shutter, Image& image);
 
 /// Rays a pixel: with n stratified rays a texture's contrast c leaves noise of c n^-3/4, here 1/23.

@@ -44,11 +44,15 @@ Vec3 CameraView::lens_point(Vec2 lens) const {
   return Vec3(camera_.scene_from_camera.point({double(on.x), double(on.y), 0}));
 }
 
+std::array<double, 2> CameraView::in_picture(Vec2 raster) const {
+  return {centre_x_ + (2.0 * double(raster.x) / width_ - 1) * half_width_,
+          centre_y_ + (1 - 2.0 * double(raster.y) / height_) * half_height_};
+}
+
 /// From the point l of the lens to the point focus (p, -1) of the plane of focus, where p is the raster position in the
 /// picture at distance 1: the direction is (p - l / focus, -1), also for an infinite focus.
 Ray CameraView::through_lens(const CameraSample& sample) const {
-  const double px = centre_x_ + (2.0 * double(sample.raster.x) / width_ - 1) * half_width_;
-  const double py = centre_y_ + (1 - 2.0 * double(sample.raster.y) / height_) * half_height_;
+  const auto [px, py] = in_picture(sample.raster);
   const Vec2 on = on_lens(sample.lens);
   const double lx = double(on.x), ly = double(on.y);
   const Affine& from = camera_.scene_from_camera;
@@ -62,8 +66,7 @@ double CameraView::blur(double depth) const {
 }
 
 Ray CameraView::pinhole(Vec2 raster) const {
-  const double px = centre_x_ + (2.0 * double(raster.x) / width_ - 1) * half_width_;
-  const double py = centre_y_ + (1 - 2.0 * double(raster.y) / height_) * half_height_;
+  const auto [px, py] = in_picture(raster);
   const Affine& from = camera_.scene_from_camera;
   if (orthographic()) return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
   return {Vec3(from.translation), Vec3(normalize(from.direction({px, py, -1}))), 0, INFINITY};

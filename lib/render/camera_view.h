@@ -13,12 +13,10 @@
 
 namespace tempolux {
 
-/// One sample of the camera's measurement: where a ray passes the picture, the lens and the time the shutter is open. A
-/// search for CameraSample finds who integrates over all three.
+/// One sample of the camera's measurement: where a ray passes the picture and the lens. Shutter draws its time.
 struct CameraSample {
   Vec2 raster;            ///< raster coordinates
   Vec2 lens{0.5f, 0.5f};  ///< place on the lens as two numbers in [0, 1); (.5, .5) is its centre
-  float shutter = 0;      ///< share of the time the shutter is open, in [0, 1)
 };
 
 /// A camera with a picture size in pixels, at least 1 x 1. Pixel (0, 0) is the top left one. Raster coordinates grow
@@ -36,9 +34,9 @@ class CameraView {
   int height() const { return height_; }
   const PlacedCamera& camera() const { return camera_; }
 
-  /// The ray of a sample in scene space, with a unit direction. Perspective rays start at the sample's point of the
-  /// lens, at the eye of a pinhole, orthographic rays on the plane through the eye. The
-  /// view is that of one moment (Shutter).
+  /// The ray of a sample in scene space, with a unit direction, at the moment of this view (Shutter). Perspective rays
+  /// start at the sample's point of the lens, or at the eye of a pinhole; orthographic rays start on the plane through
+  /// the eye.
   ///
   /// Thin lens: all rays of a raster position meet in one point of the plane of focus, on the pinhole ray [Cook,
   /// Porter, Carpenter, Distributed Ray Tracing, 1984]. The circle of confusion of a point at depth z has the diameter
@@ -89,6 +87,8 @@ class CameraView {
   Vec2 on_lens(Vec2 lens) const;
   /// x, y: in the picture at distance 1 (perspective), or in m (orthographic).
   std::array<double, 2> raster_of(double x, double y) const;
+  /// The place of a raster position in the picture at distance 1: the inverse of raster_of.
+  std::array<double, 2> in_picture(Vec2 raster) const;
 
   PlacedCamera camera_;
   Affine camera_from_scene_;

@@ -60,7 +60,6 @@ struct Vertex {
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
-  bool plate = false;         ///< the surface bounds a plate that refracts the path
   float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
 
   /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection and
@@ -189,7 +188,6 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
     if (!next.delta) state.widen(x.gloss_density(next.wi));
   }
   event.pass(x.surface, at.material, dot(x.surface.normal_geometric, state.ray.direction) < 0, state.inside);
-  if (at.plate) state.plate = x.surface.material;
   if (!survives(state, kLargestPhotonSurvival)) return false;
 
   LastScatter& last = state.last;
@@ -341,7 +339,7 @@ void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   const SceneFrame& frame = scene_.frame();
   const Vec3 wo = -state.ray.direction;
   const bool front = dot(point.normal_geometric, wo) > 0,
-             solid = !(point.plate > 0) && is_solid_glass(frame.materials[point.material]);
+             solid = bounds_solid(frame.materials[point.material], point.plate);
   if (state.inside.any() || (!front && solid))
     state.throughput *= state.inside.transmittance_to(frame.materials, point.material, front, state.hit.t);
   state.cone.advance(state.hit.t);
@@ -466,10 +464,11 @@ bool EyeTracer::step(PathState& state) const {
   }
   const ShadingPoint x(point, -state.ray.direction, material);
   Vertex at{x, material};
-  at.plate = refracting_plate;
-  // Something inside a plate, such as a frame: light reaches it straight, and the plate does not absorb on its way.
-  if (state.plate != kNone && !(x.bsdf.specular_is_delta() && !x.bsdf.has_diffuse())) [[unlikely]]
+  // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
+  // surface straight and without absorption, so the path forgets the plate's glass.
+  if (state.plate != kNone && (x.bsdf.has_diffuse() || !x.bsdf.specular_is_delta())) [[unlikely]]
     state.inside.forget(std::exchange(state.plate, kNone));
+  if (refracting_plate) state.plate = point.material;
   if (only_specular) at.known = {LightKind::direct, LightKind::caustic, LightKind::indirect, LightKind::lamps};
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())

@@ -192,7 +192,8 @@ struct RenderScene {
   /// between them is half of the noise.
   bool suns_apart = false;
   Inside camera_inside{};  ///< the absorbing solid in which camera paths start
-  /// At a moment of a shutter: where its hits lie in the scene of the stored light; null: where they are.
+  /// At a moment of a shutter: finds the place of a hit in the scene that stored light belongs to. Null: the scene
+  /// itself holds the stored light.
   const StoredPlaces* stored = nullptr;
   const SceneFrame& frame() const { return tracer.frame(); }
 };

@@ -19,7 +19,9 @@ struct Remembered {
   float let_in = 1;      ///< Bsdf::arrival_weight of light along the normal
   FootprintLight light;  ///< reused within light.alike_within
 
-  static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(Vec3{0, 0, 1}) : 1; }
+  static float let_in_by(const LitSurface& surface) {
+    return surface.bsdf ? surface.bsdf->arrival_weight(Vec3{0, 0, 1}) : 1;
+  }
   bool holds_at(const PhotonLight* map, Vec3 place, const LitSurface& surface) const {
     return of == map && length2(place - position) < light.alike_within * light.alike_within &&
            dot(surface.geometric, geometric) > kAlike && dot(surface.shading, shading) > kAlike &&

@@ -157,15 +157,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
   for (int i = 0; i < pass.count.own; ++i) {
     const PixelRandom random = of_pixel.of_sample(std::uint32_t(pass.first.own + i));
     const PathEffort effort = dealt(i);
-    const RenderScene* now = &camera.scene;
-    const CameraView* through = &camera.view;
-    if (camera.shutter) [[unlikely]] {
-      // Bounce 1 of the camera's purposes is free: the time gets a sequence of its own.
-      const Moment& moment = camera.shutter->at(random.get1(1, Purpose::lens));
-      now = &moment.scene(), through = &moment.view();
-    }
-    const RenderScene& scene = *now;
-    const CameraView& view = *through;
+    const auto [scene, view] = seen_now({camera.scene, camera.view}, camera.shutter, random);
     const Ray ray = view.ray(sample_of_pixel(view, pass.x, pass.y, random));
     Hit hit;
     scene.tracer.intersect(ray, hit);

@@ -128,7 +128,7 @@ double OpenTime::longest_way(const std::vector<Followed>& places) const {
 
 }  // namespace
 
-/// What the sky's guide has learned at the frame's time holds all the time.
+/// All moments use the sky guide that was learned at the frame's time.
 Moment::Moment(SceneFrame frame, const EmissionTable& emission, const ShutterInput& input, StaticTree& tree)
     : frame_(std::move(frame)),
       tracer_(frame_, tree),

@@ -1,6 +1,7 @@
 // lib/render/shutter.h -- motion blur: the scene at moments while the camera's shutter is open.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -36,13 +37,13 @@ class Moment {
   RenderScene scene_;
 };
 
-/// While the shutter is open (Camera::shutter_frames) all light that arrives counts alike. A sample of
-/// a pixel draws one of n moments, the middles of n equal parts of that time, and its whole path sees the scene of this
-/// moment: surfaces, deformed ones too, lamps and the camera stand where they stand then, without any interpolation
-/// between moments. An edge that moves by m pixels is a ramp. With n moments its pixels, which are boxes of one pixel, are
-/// off by (m / n)^2 / (8 m) at most, the error of the midpoint rule where the box begins or ends; n is so large that this
-/// is a quarter of a step of 8 bits, 1 / 1020, and that the edge moves by a pixel at most from one moment to the next.
-/// Smoke is that of the frame's time. Materials change with time; the lens and what is in focus are the frame's.
+/// All light that arrives while the shutter is open (Camera::shutter_frames) has the same weight. A sample of a pixel
+/// draws one of n moments, the middles of n equal parts of this time, and its whole path sees the scene of this moment:
+/// surfaces (deformed ones too), lamps and the camera are placed at this moment; nothing is interpolated between
+/// moments. An edge that moves by m pixels becomes a ramp. With n moments a pixel of this ramp errs by at most (m /
+/// n)^2 / (8 m), the error of the midpoint rule where the pixel's box begins or ends. n is so large that this error is
+/// a quarter of a step of 8 bits, 1 / 1020, and that the edge moves by at most a pixel from one moment to the next.
+/// Smoke is that of the frame's time. Materials change with time; the lens and its focus are those of the frame.
 class Shutter {
  public:
   /// nullptr if the shutter is open for no time, or nothing moves while it is open.
@@ -69,5 +70,21 @@ class Shutter {
   std::vector<std::unique_ptr<Moment>> moments_;
   double motion_px_ = 0;
 };
+
+/// What a sample sees: the scene and the view of its moment, or those of the frame without a shutter.
+struct SeenNow {
+  const RenderScene& scene;
+  const CameraView& view;
+};
+
+/// Draws the moment of a sample. `frame`: scene and view of the frame. shutter: may be null.
+template <class Random>
+SeenNow seen_now(const SeenNow& frame, const Shutter* shutter, const Random& random) {
+  if (!shutter) [[likely]]
+    return frame;
+  // Bounce 1 of the camera's purposes is free: the time gets a sequence of its own.
+  const Moment& moment = shutter->at(random.get1(1, Purpose::lens));
+  return {moment.scene(), moment.view()};
+}
 
 }  // namespace tempolux

@@ -8,8 +8,8 @@
 
 namespace tempolux {
 
-/// Points, records and photons lie on the surfaces of one moment. A path of another moment finds its light at the place
-/// that the hit has then: same triangle, same barycentric coordinates. So light sticks to what moves.
+/// Points, records and photons lie on the surfaces of one moment. A path of another moment reads the stored light at
+/// the same triangle and barycentric coordinates, so light moves with its surface.
 class StoredPlaces {
  public:
   /// `here`: a moment; `stored`: the scene of the light, which must outlive this object. Both are of one Scene.

@@ -79,8 +79,9 @@ Place open_document(const std::string& path, const std::string& schema, Json& ke
     throw InputError(path + ": not a " + schema + " file: its \"schema\" is another");
   const std::string version = top.at("version").string();
   if (version != "1" && !version.starts_with("1."))
-    throw InputError(path + ": version " + Json(version.substr(0, 20)).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                     " of " + schema + "; this program reads 1.x");
+    throw InputError(path + ": version " +
+                     Json(version.substr(0, 20)).dump(-1, ' ', true, Json::error_handler_t::replace) + " of " + schema +
+                     "; this program reads 1.x");
   return top;
 }
 

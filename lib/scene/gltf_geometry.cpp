@@ -106,7 +106,8 @@ bool keeps_axes(const Texture& texture) {
 }
 
 /// Reads tangents: a unit vector and the sign of the third axis (glTF 2.0, 3.7.2.1). Reads nothing unless the primitive
-/// has normals and its material a map along tangents that keeps the axes; read_primitive() then computes tangents if needed.
+/// has normals and its material a map along tangents that keeps the axes; read_primitive() then computes tangents if
+/// needed.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];

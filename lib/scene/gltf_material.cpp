@@ -153,8 +153,8 @@ MaterialTextures read_textures(Import& import, const tinygltf::Material& source,
   if (textures.clearcoat_normal) {
     const std::string there = place + ".extensions.KHR_materials_clearcoat.clearcoatNormalTexture";
     const Value& info = source.extensions.at("KHR_materials_clearcoat").Get("clearcoatNormalTexture");
-    textures.clearcoat_normal_scale = limited(import, ExtensionReader{import, info, there}.number("scale", 1),
-                                              -kNoUpper, kNoUpper, there + ".scale");
+    textures.clearcoat_normal_scale =
+        limited(import, ExtensionReader{import, info, there}.number("scale", 1), -kNoUpper, kNoUpper, there + ".scale");
   }
   return textures;
 }

@@ -29,7 +29,6 @@ struct SurfaceAxes {
   Vec3 coat_normal{0, 0, 0};  ///< normal of the clearcoat; none: the shading normal
   Vec3 grain{0, 0, 0};        ///< direction along which anisotropy adds roughness, roughly perpendicular to the normal
 
-  bool any() const { return coat_normal != Vec3{} || grain != Vec3{}; }
   bool operator==(const SurfaceAxes&) const = default;
 };
 /// Surfaces of a smaller roughness are delta mirrors or smooth glass. At this roughness GGX has alpha = 4e-4, so

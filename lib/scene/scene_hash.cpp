@@ -157,7 +157,7 @@ std::string materials_hash(const Scene& scene, std::span<const Material> materia
   for (const Material* material : ordered) {
     if (!material) break;
     add_material(hasher, scene, *material);
-    // Files of earlier versions hold light behind plates as caustic light.
+    // Earlier versions stored light that had passed a plate as caustic light. The word makes such files stale.
     if (may_be_plate(*material)) hasher.add(std::string_view("plates"));
   }
   return hasher.hex();
@@ -204,7 +204,7 @@ formats::Identity identity_of(const SceneFrame& frame) {
 
 namespace {
 
-/// What the camera shows of a scene that stands still, through a pinhole.
+/// Hashes the members that decide what a pinhole camera shows of a scene that stands still.
 Hasher pinhole_hasher(const PlacedCamera& placed) {
   Hasher hasher;
   hasher.add(std::string_view("camera 3"));

@@ -5,8 +5,8 @@
 
 namespace tempolux {
 
-/// The frames `first` to `last` as a segment, wherever borders lie. With options.fps times k the frames are steps of
-/// 1 / k frame: so what moves while a shutter is open is found between frames, too. Throws as segment_of().
+/// The frames `first` to `last` as a segment, wherever borders lie. If options.fps is k times the scene's rate, frames
+/// are steps of 1 / k frame. Then the segment also finds what moves between frames. Throws as segment_of().
 Segment segment_between(const Scene& scene, int first, int last, const TimeOptions& options);
 
 }  // namespace tempolux

@@ -9,7 +9,8 @@ bool arrives(const Receiver& at, DirectSample& sample) {
   const LightSample& light = sample.light;
   const float cosine = dot(light.wi, at.shading);
   if (!(cosine > 0 && dot(light.wi, at.geometric) > 0)) return false;
-  sample.irradiance = light.facing_irradiance * (at.coat ? cosine * at.coat->arrival_weight(light.wi, at.shading) : cosine);
+  sample.irradiance =
+      light.facing_irradiance * (at.coat ? cosine * at.coat->arrival_weight(light.wi, at.shading) : cosine);
   sample.shadow = spawn_shadow_ray(at.place, light.position, light.position_offset);
   return true;
 }

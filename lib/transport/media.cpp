@@ -20,7 +20,8 @@ Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction)
   if (!(point.plate > 0) && !may_be_pane(frame.materials[point.material])) return Rgb(0.0f);
   const SurfaceMaterial material(frame, point);
   const Vec3 wo = -normalize(direction);
-  return Bsdf(material, dot(point.normal_geometric, wo) > 0, point.plate).passed_straight(SeenSide(point, wo).wo_local.z);
+  return Bsdf(material, dot(point.normal_geometric, wo) > 0, point.plate)
+      .passed_straight(SeenSide(point, wo).wo_local.z);
 }
 
 namespace {

@@ -27,7 +27,7 @@ struct Scattered {
   Scattered(const ShadingPoint& x, float u_lobe, Vec2 u) : Scattered(x.bsdf, x.frame, x.eye, u_lobe, u) {}
   /// Updates the solids that the path is inside. front: the side of the surface from which the path came.
   void pass(const SurfacePoint& point, const MaterialValues& material, bool front, Inside& inside) const {
-    if (!sample.diffuse && is_solid_glass(material) && !(point.plate > 0))
+    if (!sample.diffuse && bounds_solid(material, point.plate))
       inside.scatter(point.material, front, sample.transmitted);
   }
 };

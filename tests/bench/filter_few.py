@@ -15,8 +15,6 @@ Open Image Denoise gets colour, albedo and normals of the same file. It runs whe
 
 import argparse
 import math
-import os
-import re
 import statistics
 import subprocess
 import sys
@@ -25,8 +23,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
 import peer_renderers
+import pipeline
 import pixels
-from seen import blurred, code
+from seen import Seen, blurred
 
 TOP = Path(__file__).resolve().parents[2]
 ERRORS = {"e20": 0.2, "e06": 0.06, "e03": 0.03}  # pixel errors: about 4 to 8, 6 to 19, 8 to 33 samples
@@ -62,17 +61,17 @@ def raw_frame(options, name, seed, label, words):
         return file
     folder.mkdir(parents=True, exist_ok=True)
     frame, variables = scenes(options.shared)[name]
-    wish = {"BIN": options.bin, "OUT": folder / "out", "SIZE": options.size, "FRAMES": frame, "FILTER": 1, "PIXELS": words}
-    command = ["make", "-s", "-f", TOP / "Makefile.example", *(f"{k}={v}" for k, v in (wish | variables).items())]
-    env = os.environ | {"MEASURE_SEED": str(seed)}
+    wish = {"SIZE": options.size, "FRAMES": frame, "FILTER": 1, "PIXELS": words} | variables
+    out, env = folder / "out", pipeline.environment() | {"MEASURE_SEED": str(seed)}
 
     def make(goal):
-        subprocess.run([*map(str, command), goal], check=True, env=env, stdout=subprocess.DEVNULL)
+        command = pipeline.command(TOP, options.bin, out, goal, **wish)
+        subprocess.run(command, check=True, env=env, stdout=subprocess.DEVNULL)
 
     make("plan")
-    raw = re.search(rf"^(raw/{frame:04d}-\w+\.exr):", (folder / "out" / "plan.mk").read_text(), re.M)[1]
+    raw = next(name for name in pipeline.made_files(out) if name.startswith(f"raw/{frame:04d}-"))
     make(raw)
-    (folder / "out" / raw).rename(file)
+    (out / raw).rename(file)
     return file
 
 
@@ -85,35 +84,30 @@ def filtered(options, file):
 
 def denoised(options, file):
     """R, G, B planes of the frame after Open Image Denoise; None where it is not installed."""
-    program = next(options.oidn.glob("lib/python*/site-packages/pyoidn/oidn/bin/oidnDenoise"), None)
+    program = peer_renderers.oidn_in(options.oidn)
     if not program:
         return None
     stem, out = file.with_suffix(""), file.with_suffix(".oidn.pfm")
+
+    def run(command, env):
+        subprocess.run(command, check=True, env=env, stdout=subprocess.DEVNULL)
+
     if not out.exists():
-        program.chmod(0o755)
         peer_renderers.for_denoising(stem, exr.read(file))
-        words = ["--hdr", f"{stem}.pfm", "--alb", f"{stem}.albedo.pfm", "--nrm", f"{stem}.normal.pfm", "-o", out]
-        env = {"LD_LIBRARY_PATH": str(program.parents[1] / "lib")}
-        subprocess.run([program, *words], check=True, env=env, stdout=subprocess.DEVNULL)
+        peer_renderers.denoise(run, program, stem, out)
     return peer_renderers.read_pfm(out)[2]
 
 
-class Scene:
+class References(Seen):
     """References of both seeds, and figures against them."""
 
     def __init__(self, files):
         images = [exr.read(file) for file in files]
         self.width, self.height = images[0].width, images[0].height
-        planes = [pixels.planes(image) for image in images]
-        median = statistics.median(sum(v) for v in zip(*planes[0], *planes[1])) / 6
-        self.exposure = 0.18 / median if median > 0 else 1
-        self.references = [self.codes(p) for p in planes]
-        self.variance = [v / 2 for v in self.squares(*self.references)]
+        super().__init__(*map(pixels.planes, images))
+        self.variance = [v / 2 for v in self.boxed(self.a, self.b)]
 
-    def codes(self, planes):
-        return [[code(self.exposure * v) for v in plane] for plane in planes]
-
-    def squares(self, one, two):
+    def boxed(self, one, two):
         """Mean squared difference of box means, by box."""
         off = [[a - b for a, b in zip(*pair)] for pair in zip(one, two)]
         boxed = ([blurred(p, self.width, self.height, n // 2) if n > 1 else p for p in off] for n in BOXES)
@@ -122,9 +116,9 @@ class Scene:
     def figures(self, pair):
         """(error, noise) by box, of the pictures of both seeds."""
         mine = [self.codes(planes) for planes in pair]
-        against = [self.squares(mine[s], self.references[1 - s]) for s in (0, 1)]
+        against = [self.boxed(mine[0], self.b), self.boxed(mine[1], self.a)]
         error = [math.sqrt(max(0.0, (a + b) / 2 - v)) for a, b, v in zip(*against, self.variance)]
-        return error, [math.sqrt(v / 2) for v in self.squares(*mine)]
+        return error, [math.sqrt(v / 2) for v in self.boxed(*mine)]
 
 
 def main():
@@ -138,9 +132,10 @@ def main():
     parser.add_argument("--oidn", type=Path, default=TOP / "build" / "peers" / "oidn")
     parser.add_argument("--label", default="filtered", help="name of this filter in the names of its files")
     options = parser.parse_args()
+    options.bin, options.out, options.shared = (p.resolve() for p in (options.bin, options.out, options.shared))
     ratios = []
     for name in options.scenes.split(","):
-        scene = Scene([raw_frame(options, name, seed, "ref", f"--spp {options.reference}") for seed in (1, 2)])
+        references = References([raw_frame(options, name, seed, "ref", f"--spp {options.reference}") for seed in (1, 2)])
         for label, error in ERRORS.items():
             files = [raw_frame(options, name, seed, label, f"--spp 4 --pixel-error {error}") for seed in (1, 2)]
             of = {
@@ -152,7 +147,7 @@ def main():
             for kind, pair in of.items():
                 if pair[0] is None:
                     continue
-                errors, noise = scene.figures(pair)
+                errors, noise = references.figures(pair)
                 first[kind] = errors[0]
                 cells = "  ".join(" ".join(f"{v:6.2f}" for v in row) for row in (errors, noise))
                 print(f"{name:14} {error:5} {kind:9} error, noise {cells}", flush=True)

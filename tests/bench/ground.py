@@ -1,41 +1,44 @@
 #!/usr/bin/env python3
-"""Light where most of it lands out of sight: a lit house on a wide ground, and a dark room beside a bright one.
+"""Bias of the layer indirect: a lit house on a ground that takes most of the light, a dark room beside a bright one.
 
     ground.py --bin BIN --out DIR [--houses closed,window] [--radii 10,200] [--seeds 2] [--qualities draft,final]
               [--ways auto,gather] [--lamps 1]
-    ground.py --bin BIN --out DIR --houses rooms --radii 0 --lamps 10,1000,100000     (lamp of the bright room over that of the dark one)
+    ground.py --bin BIN --out DIR --houses rooms --radii 0 --lamps 10,1000,100000
 
-Prints the bias of layer indirect in percent of the layer, with its standard error over pixels, beside path tracing, and
-the CPU seconds of the chain. Needs the scene generator ../shared/scenes/gen/ground_house.py, else says so.
+Prints the bias in percent of the layer, with its standard error over pixels, beside path tracing, and the CPU seconds of
+the chain. --radii: half of the ground's width in metres, nothing in rooms; --lamps: candela, in rooms those of the bright
+one over those of the dark one. closed and window need the scene generator ../shared/scenes/gen/ground_house.py and are
+skipped where it is not.
 """
 import argparse
 import json
-import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
+import pipeline
+
 TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "tests" / "support"))
+from open_scenes import Scene, boxes  # noqa: E402
+
 HOUSE = TOP.parent / "shared/scenes/gen/ground_house.py"
 SIZE = "96x54"
 
 
 def two_rooms(path, ratio):
     """A dark room, lit by a lamp of 1 cd, beside one lit by a lamp of `ratio` cd; a wall of .1 m between them."""
-    sys.path.insert(0, str(HOUSE.parent))
-    import g as scenes
-    file = scenes.G()
-    white = file.mat((.8, .8, .8))
-    slab = lambda centre, half: file.prim(**scenes.box(centre, half), mat=white)
-    parts = [slab((x, 1.25, z), (hx, 1.45, hz)) for x, z, hx, hz in
-             ((-2.05, 0, .05, 1.6), (0, 0, .05, 1.6), (2.05, 0, .05, 1.6), (0, -1.55, 2.1, .05), (0, 1.55, 2.1, .05))]
-    parts += [slab((0, y, 0), (2.1, .1, 1.6)) for y in (-.1, 2.6)]
-    file.node(mesh=file.mesh(*parts))
-    file.node(mesh=file.mesh(file.prim(**scenes.box((-1.2, .3, -.6), (.3, .3, .3)), mat=file.mat((.7, .3, .2)))))
-    file.lnode(file.light(type="point", intensity=1.0), translation=[-1, 2.1, .2])
-    file.lnode(file.light(type="point", intensity=ratio), translation=[1, 2.1, .2])
-    file.cam((-.2, 1.4, 1.3), (-1.4, .9, -.8), 1.1)
-    file.save(str(path))
+    scene = Scene()
+    white, red = (scene.material(colour, one_sided=True, specular=1.0) for colour in (0.8, (0.7, 0.3, 0.2)))
+    boxes(scene, white, [((x - .05, -.2, -1.6), (x + .05, 2.7, 1.6)) for x in (-2.05, 0, 2.05)] +
+          [((-2.1, -.2, z - .05), (2.1, 2.7, z + .05)) for z in (-1.55, 1.55)] +
+          [((-2.1, y - .1, -1.6), (2.1, y + .1, 1.6)) for y in (-.1, 2.6)])
+    boxes(scene, red, [((-1.5, 0, -.9), (-.9, .6, -.3))])
+    scene.point_light((-1, 2.1, .2), 1)
+    scene.point_light((1, 2.1, .2), ratio)
+    scene.camera((-.2, 1.4, 1.3), (-1.4, .9, -.8), fov=1.1)
+    scene.save(path)
 
 
 def run(*words, **more):
@@ -52,19 +55,14 @@ def reference(binaries, scene, out, spp):
 
 
 def chain(binaries, scene, out, seed, quality, way):
+    """(frame, what was said, CPU seconds)"""
     folder = out / f"{scene.stem}-{quality}-{way}-{seed}"
-    run("rm", "-rf", folder)
-    environment = dict(os.environ, MEASURE_SEED=str(seed))
-    words = ["make", "-s", "-f", TOP / "Makefile.example", f"BIN={binaries}", f"OUT={folder}", f"SIZE={SIZE}", "FRAMES=0",
-             f"SCENE={scene}", f"QUALITY={quality}", "FILTER=none", "CHANNELS=RGBA,layers"]
-    if way == "preview":
-        words += ["METHOD=preview"]
-    elif way != "auto":
-        words += [f"INDIRECT={way}"]
-    said = run(*words, env=environment).stderr
-    seconds = sum(json.loads(f.read_text()).get("cpu_s", 0) for f in folder.rglob("*.json")
-                  if f.name != "plan.json" and f.read_text().startswith("{") and "cpu_s" in f.read_text())
-    return folder / "frames/0000.exr", said, seconds
+    shutil.rmtree(folder, ignore_errors=True)
+    how = {"auto": {}, "preview": {"METHOD": "preview"}}.get(way, {"INDIRECT": way})
+    words = pipeline.command(TOP, binaries, folder, SIZE=SIZE, FRAMES=0, SCENE=scene, QUALITY=quality, FILTER="none",
+                             CHANNELS="RGBA,layers", **how)
+    said = run(*words, env=pipeline.environment() | {"MEASURE_SEED": str(seed)}).stderr
+    return pipeline.frame_of(folder, 0), said, sum(pipeline.cpu_of(folder).values())
 
 
 def bias(binaries, frame, right):
@@ -86,11 +84,12 @@ def main():
     parser.add_argument("--qualities", default="draft,final")
     parser.add_argument("--ways", default="auto")
     options = parser.parse_args()
-    if not HOUSE.exists():
-        print("ground.py: skipped, no", HOUSE)
-        return
+    options.bin, options.out = options.bin.resolve(), options.out.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
     for house in options.houses.split(","):
+        if house != "rooms" and not HOUSE.exists():
+            print(f"ground.py: {house} skipped, no {HOUSE}")
+            continue
         for radius in options.radii.split(","):
             for lamp in options.lamps.split(","):
                 scene = options.out / f"{house}-{radius}-{lamp}.glb"
@@ -105,8 +104,8 @@ def main():
                             frame, said, seconds = chain(options.bin, scene, options.out, seed, quality, way)
                             off, error = bias(options.bin, frame, right)
                             warned = "warned" if "off by" in said else ""
-                            print(f"{scene.stem:16} {quality:6} {way:8} seed {seed}: {off:6.1f} +- {error:.1f} % {seconds:5.1f} CPU s {warned}",
-                                  flush=True)
+                            print(f"{scene.stem:16} {quality:6} {way:8} seed {seed}: {off:6.1f} +- {error:.1f} %",
+                                  f"{seconds:5.1f} CPU s {warned}", flush=True)
 
 
 if __name__ == "__main__":

@@ -76,22 +76,31 @@ def planes_of(file):
     )
 
 
+def oidn_in(folder):
+    """The program of Open Image Denoise where the Python package pyoidn is below a folder; None where it is not."""
+    program = next(Path(folder).glob("lib/python*/site-packages/pyoidn/oidn/bin/oidnDenoise"), None)
+    if program:
+        program.chmod(0o755)
+    return program
+
+
+def denoise(run, program, stem, out):
+    """Open Image Denoise writes OUT from STEM.pfm, STEM.albedo.pfm and STEM.normal.pfm; run(words, variables) runs it."""
+    words = ["--hdr", f"{stem}.pfm", "--alb", f"{stem}.albedo.pfm", "--nrm", f"{stem}.normal.pfm", "-o", out]
+    run([program, *words], {"LD_LIBRARY_PATH": str(program.parents[1] / "lib")})
+
+
 def denoised(bench, stem):
-    """(planes of STEM.pfm after Open Image Denoise with STEM.albedo.pfm and STEM.normal.pfm, its CPU seconds)"""
-    program = next(folder_of(bench, "oidn").glob("lib/python*/site-packages/pyoidn/oidn/bin/oidnDenoise"))
-    program.chmod(0o755)
-    out = f"{stem}.clean.pfm"
+    """(planes of STEM.pfm after denoise(), its CPU seconds)"""
+    program, out = oidn_in(folder_of(bench, "oidn")), f"{stem}.clean.pfm"
     before = os.times()
-    bench.run(
-        [program, "--hdr", f"{stem}.pfm", "--alb", f"{stem}.albedo.pfm", "--nrm", f"{stem}.normal.pfm", "-o", out],
-        {"LD_LIBRARY_PATH": str(program.parents[1] / "lib")},
-    )
+    denoise(bench.run, program, stem, out)
     after = os.times()
     return read_pfm(out)[2], after.children_user + after.children_system - before.children_user - before.children_system
 
 
 def for_denoising(stem, image):
-    """Writes our picture with channels albedo and N as the three files of denoised()."""
+    """Writes our picture with channels albedo and N as the three files of denoise()."""
     for end, names in (
         ("", "RGB"),
         (".albedo", ("albedo.R", "albedo.G", "albedo.B")),

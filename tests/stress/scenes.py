@@ -166,7 +166,7 @@ class Scene:
             self.data.append(0)
         view = self._append("bufferViews", {"buffer": 0, "byteOffset": len(self.data), "byteLength": 4 * len(values)})
         self.data += values.tobytes()
-        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[kind]
+        width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[kind]
         entry = {"bufferView": view, "componentType": component, "count": len(values) // width, "type": kind}
         if kind == "VEC3" and component == 5126:
             entry["min"], entry["max"] = ([f(values[c::3]) for c in range(3)] for f in (min, max))
@@ -204,11 +204,13 @@ class Scene:
         self.extensions |= set(added)
         return index
 
-    def mesh(self, positions, triangles, material, normals=None, **node):
+    def mesh(self, positions, triangles, material, normals=None, uvs=None, **node):
         """One object; `node`: translation, rotation, scale, name."""
         attributes = {"POSITION": self._accessor(array.array("f", positions), "VEC3", 5126)}
         if normals is not None:
             attributes["NORMAL"] = self._accessor(array.array("f", normals), "VEC3", 5126)
+        if uvs is not None:
+            attributes["TEXCOORD_0"] = self._accessor(array.array("f", uvs), "VEC2", 5126)
         indices = self._accessor(array.array("I", triangles), "SCALAR", 5125)
         primitive = {"attributes": attributes, "indices": indices, "material": material}
         return self.node(mesh=self._append("meshes", {"primitives": [primitive]}), **node)

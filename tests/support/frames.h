@@ -1,6 +1,7 @@
 // tests/support/frames.h -- scenes and cameras for tests of whole frames.
 #pragma once
 
+#include "lib/points/irradiance_points.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/known_light.h"
 #include "lib/scene/gltf_load.h"
@@ -56,6 +57,17 @@ struct Lit {
   explicit Lit(const SceneFrame& frame) : tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
   RenderScene scene() const { return {tracer, lights}; }
 };
+
+/// Direct irradiance [W/m^2] that an irradiance point facing up holds at a position.
+inline Rgb direct_at(const Tracer& tracer, const Lights& lights, Vec3 position, int samples) {
+  std::vector<IrradiancePoint> points(1);
+  points[0].position = position;
+  points[0].normal = {0, 1, 0};
+  PointOptions options;
+  options.light_samples = samples;
+  update_direct(tracer, lights, nullptr, options, points);
+  return points[0].direct;
+}
 
 /// An empty photon map: all light but direct light is 0.
 struct NoLight {

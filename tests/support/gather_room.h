@@ -11,7 +11,8 @@
 
 namespace tempolux::test {
 
-/// A room of 2 m with a box in it, seen by a pinhole from its upper corner or from `eye`; every irradiance point holds 1 or 3 W/m^2.
+/// A room of 2 m with a box in it, seen by a pinhole from its upper corner or from `eye`; every irradiance point holds
+/// 1 or 3 W/m^2.
 struct GatherRoom {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;

@@ -19,8 +19,8 @@ inline constexpr const char* kImportanceHelp =
 /// Spheres around what the cameras see, in world space, and shares of the lights, by segment.
 class Importance {
  public:
-  /// `option` as above. If it is "" the scene must have a camera. `kinds`: of the photons whose shares are wanted, as for
-  /// PhotonOptions::set_kinds.
+  /// `option` as above. If it is "" the scene must have a camera. `kinds`: of the photons whose shares are wanted, as
+  /// for PhotonOptions::set_kinds.
   Importance(Tool& tool, SceneInput& input, const std::string& option, std::string kinds);
   /// The view of the segment that holds the frame; empty: no aim.
   const formats::View& at(int frame);

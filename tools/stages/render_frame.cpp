@@ -101,7 +101,8 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
 /// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp. Photons are also looked at
 ///   in mirrors and glass (SpecularHits).
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
-/// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane or plate: photons,
+/// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane or plate:
+/// photons,
 ///   because no camera path meets a sun via a smooth surface.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
@@ -181,22 +182,13 @@ void add_light_without_paths(Tool& tool, const RenderOptions& options, const Sho
   }
 }
 
-/// A scene at a frame, and the camera that looks at it.
-struct Looking {
-  const RenderScene& scene;
-  const CameraView& view;
-  int camera;  ///< node
-};
-
 /// The moments of the camera's shutter; nullptr if nothing is blurred. Stored light belongs to the frame's time, so it
 /// can be read only where this is the middle of the shutter.
-std::unique_ptr<const Shutter> open_shutter(Tool& tool, SceneInput& input, const RenderOptions& options,
-                                            const Looking& looking) {
-  const Camera& camera = looking.view.camera().camera;
+std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& options, const ShutterInput& input) {
+  const Camera& camera = input.view.camera().camera;
   if (!(camera.shutter_frames > 0)) return nullptr;
   tool.stats().phase("shutter", true);
-  std::unique_ptr<const Shutter> shutter =
-      Shutter::of({input.scene(), input.time(), looking.camera, looking.scene, looking.view});
+  std::unique_ptr<const Shutter> shutter = Shutter::of(input);
   if (!shutter) return nullptr;
   if (!options.traces_paths() && camera.shutter != Camera::Shutter::centre)
     throw InputError(
@@ -230,7 +222,8 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 
-  const std::unique_ptr<const Shutter> shutter = open_shutter(tool, input, options, {scene, view, camera});
+  const std::unique_ptr<const Shutter> shutter =
+      open_shutter(tool, options, {input.scene(), input.time(), camera, scene, view});
   frame_options.shutter = shutter.get();
   tool.stats().phase("render", true);
   if (!is_reference) frame_options.known = &light.get();

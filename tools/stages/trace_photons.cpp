@@ -72,8 +72,8 @@ void PhotonTracing::trace(int frame_number, bool is_last) {
   else trace_global(frame_number);
 }
 
-/// The emission table of the frame, with distant light aimed where the cameras look, and photons for every light by what
-/// they bring into view.
+/// The emission table of the frame, with distant light aimed where the cameras look, and photons for every light by
+/// what they bring into view.
 EmissionTable PhotonTracing::aimed_emission(const SceneFrame& frame, int frame_number) {
   EmissionTable emission = input_.emission(frame.frame);
   const formats::View& view = importance_.at(frame_number);

@@ -9,8 +9,8 @@
 
 namespace tempolux::integrals {
 
-/// The directional albedo towards a direction at this cosine, and at `angle` to the axis of alpha_t: the mean of G2 / G1
-/// over 2n x n visible normals (Heitz, JCGT 7(4), 2018), and the same times (1 - wo h)^5.
+/// The directional albedo towards a direction at this cosine, and at `angle` to the axis of alpha_t: the mean of G2 /
+/// G1 over 2n x n visible normals (Heitz, JCGT 7(4), 2018), and the same times (1 - wo h)^5.
 inline Albedo anisotropic_albedo(double cos_o, double angle, double alpha_t, double alpha_b, int n) {
   const double pi = std::numbers::pi, sin_o = std::sqrt(std::max(0.0, 1 - cos_o * cos_o));
   const double o[3] = {sin_o * std::cos(angle), sin_o * std::sin(angle), cos_o};

@@ -1,4 +1,5 @@
-// make_material_tables FILE -- writes the C++ source of the tables of albedo.h, glass_albedo.h, anisotropic_ggx.h and sheen.h. The build runs it.
+// make_material_tables FILE -- writes the C++ source of the tables of albedo.h, glass_albedo.h, anisotropic_ggx.h and
+// sheen.h. The build runs it.
 #include <cstdio>
 #include <span>
 
@@ -114,7 +115,8 @@ int main(int argc, char** argv) {
   if (!out) return 2;
   std::fputs(
       "#include \"lib/material/albedo.h\"\n#include \"lib/material/glass_albedo.h\"\n"
-             "#include \"lib/material/anisotropic_ggx.h\"\n#include \"lib/material/sheen.h\"\n\n", out);
+      "#include \"lib/material/anisotropic_ggx.h\"\n#include \"lib/material/sheen.h\"\n\n",
+      out);
   tempolux::write_albedo(out);
   tempolux::write_glass(out);
   tempolux::write_anisotropic(out);

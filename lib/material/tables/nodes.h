@@ -41,6 +41,27 @@ inline integrals::Albedo node(int row, int column, const integrals::GaussLegendr
 
 }  // namespace tempolux::albedo_table
 
+namespace tempolux {
+
+/// Cosine-weighted mean, 2 integral_0^1 V(mu) mu dmu, of values V that a lobe interpolates between columns: midpoints
+/// of `steps` equal steps of the column's position. cos_at: cosine at a position from 0 to 1.
+template <class Cos>
+double mean_of_columns(const std::vector<double>& values, int steps, const Cos& cos_at) {
+  double sum = 0, before = 0;
+  for (int i = 0; i < steps; ++i) {
+    float weight[4];
+    const int first = cubic_weights(float((i + 0.5) / steps), int(values.size()), weight);
+    double value = 0;
+    for (int k = 0; k < 4; ++k) value += double(weight[k]) * values[std::size_t(first + k)];
+    const double cos = cos_at((i + 1.0) / steps);
+    sum += std::clamp(value, 0.0, 1.0) * (cos * cos - before * before);
+    before = cos;
+  }
+  return sum;
+}
+
+}  // namespace tempolux
+
 namespace tempolux::glass_table {
 
 /// Index on the side of the incident direction over the index on the other side. Side 0 is outside of the glass.
@@ -54,23 +75,11 @@ inline double node(int side, int plane, int row, int column, int n) {
   return integrals::glass_loss(cos, alpha, eta_of(side, index), n);
 }
 
-/// Cosine-weighted mean of one row, 2 integral_0^1 L(mu) mu dmu, of the values L that GlassLoss interpolates between
-/// the row's columns: midpoints of 16384 equal steps of the column's position.
+/// Cosine-weighted mean of the values of one row, by column, as GlassLoss interpolates them.
 inline double mean_of_row(int side, int plane, int row, const std::vector<double>& values) {
   const double alpha = alpha_of_row(double(row) / (kRows - 1));
   const double index = index_of_plane(double(plane) / (kPlanes - 1));
-  const int steps = 16384;
-  double sum = 0, before = 0;
-  for (int i = 0; i < steps; ++i) {
-    float weight[4];
-    const int first = cubic_weights(float((i + 0.5) / steps), kColumns, weight);
-    double loss = 0;
-    for (int k = 0; k < 4; ++k) loss += weight[k] * values[std::size_t(first + k)];
-    const double cos = cos_of_column(side, index, (i + 1.0) / steps, alpha);
-    sum += std::clamp(loss, 0.0, 1.0) * (cos * cos - before * before);
-    before = cos;
-  }
-  return sum;
+  return mean_of_columns(values, 16384, [&](double position) { return cos_of_column(side, index, position, alpha); });
 }
 
 }  // namespace tempolux::glass_table
@@ -79,18 +88,20 @@ namespace tempolux::anisotropic_table {
 
 /// E and m at a node, by 64 x 32 visible normals.
 inline integrals::Albedo node(int row, int width, int column, int turn) {
-  const double b = alpha_b_of(double(row) / (kRows - 1)), t = alpha_t_of(b, double(width) / (kWidths - 1));
-  const double angle = angle_of(double(turn) / (kTurns - 1));
-  const double mu = cos_of(double(column) / (kColumns - 1), alpha_at(t, b, angle));
+  const double b = albedo_table::alpha_of_row(double(row) / (kRows - 1)),
+               t = alpha_t_of(b, double(width) / (kWidths - 1));
+  const double angle = angle_of(double(turn) / (kTurns - 1)), alpha = alpha_at(t, b, angle);
+  const double mu = albedo_table::cos_of_column(double(column) / (kColumns - 1), alpha);
   const double cos = std::clamp(mu, 1e-6 * b, 1.0);
   const integrals::Albedo e = integrals::anisotropic_albedo(cos, angle, t, b, 32);
-  return {e.total, (1 - std::pow(e.b / e.total, 0.2)) / (cos + alpha_at(t, b, angle))};
+  return {e.total, (1 - std::pow(e.b / e.total, 0.2)) / (cos + alpha)};
 }
 
 /// Cosine-weighted means of E and b that AnisotropicGgx interpolates between a row's nodes, by midpoints of steps of
 /// the positions.
 inline integrals::Albedo mean_of(int row, int width, const std::vector<integrals::Albedo>& nodes) {
-  const double b = alpha_b_of(double(row) / (kRows - 1)), t = alpha_t_of(b, double(width) / (kWidths - 1));
+  const double b = albedo_table::alpha_of_row(double(row) / (kRows - 1)),
+               t = alpha_t_of(b, double(width) / (kWidths - 1));
   constexpr int kSteps = 256, kAngles = 64;
   integrals::Albedo sum{0, 0};
   for (int a = 0; a < kAngles; ++a) {
@@ -100,8 +111,9 @@ inline integrals::Albedo mean_of(int row, int width, const std::vector<integrals
     double before = 0;
     for (int i = 0; i < kSteps; ++i) {
       const int column = cubic_weights(float((i + 0.5) / kSteps), kColumns, across);
-      const double cos = cos_of((i + 1.0) / kSteps, alpha), weight = (cos * cos - before * before) / kAngles;
-      const double middle = cos_of((i + 0.5) / kSteps, alpha);
+      const double cos = albedo_table::cos_of_column((i + 1.0) / kSteps, alpha),
+                   weight = (cos * cos - before * before) / kAngles;
+      const double middle = albedo_table::cos_of_column((i + 0.5) / kSteps, alpha);
       double total = 0, m = 0;
       before = cos;
       for (int k = 0; k < 4; ++k)
@@ -134,24 +146,14 @@ struct Row {
       const double cos = cos_of_column(double(column) / (kColumns - 1));
       raw.push_back(integrals::sheen_integral(cos, alpha, rule, one));
       std::size_t at = 0;
-      albedo.push_back(integrals::sheen_integral(
-          cos, alpha, rule, [&](double) { return 1 / std::max({1.0, raw.back(), e[at++]}); }));
+      albedo.push_back(integrals::sheen_integral(cos, alpha, rule, [&](double) {
+        return 1 / std::max({1.0, raw.back(), e[at++]});
+      }));
     }
   }
   /// Cosine-weighted mean of the values that Sheen interpolates.
   double mean() const {
-    constexpr int kSteps = 4096;
-    double sum = 0, before = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      float weight[4];
-      const int first = cubic_weights(float((i + 0.5) / kSteps), kColumns, weight);
-      double value = 0;
-      for (int k = 0; k < 4; ++k) value += double(weight[k]) * albedo[std::size_t(first + k)];
-      const double cos = std::pow((i + 1.0) / kSteps, 3);
-      sum += std::clamp(value, 0.0, 1.0) * (cos * cos - before * before);
-      before = cos;
-    }
-    return sum;
+    return mean_of_columns(albedo, 4096, [](double position) { return std::pow(position, 3); });
   }
 };
 

@@ -135,7 +135,8 @@ TEST(RecordStore, NoCellIsForgotten) {
 
 /// Records on open ground, of 60 m, reach into a house 40 m away whose records have .5 m. The house is too narrow for
 /// the ground's spokes. .5 + .1 + 40 m is far below 60 m, so that the ground's records do not count. Where radii agree,
-/// r_i <= s + d_i, all records count by their hats. Meant to catch: without the rule the light inside is .6 of what it is.
+/// r_i <= s + d_i, all records count by their hats. Meant to catch: without the rule the light inside is .6 of what it
+/// is.
 TEST(RecordStore, OpenGroundDoesNotReachIntoAHouse) {
   RecordStore store;
   for (const Vec3 ground : {Vec3{40, 0, 0}, Vec3{0, 0, 40}, Vec3{28, 0, 28}})

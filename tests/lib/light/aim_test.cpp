@@ -175,7 +175,8 @@ TEST(Aim, BouncesOnTheGroundAreAimedAtTheRoomInsideIt) {
     EXPECT_NEAR(into, way.pdf_solid_angle, 1e-3 * into);
     bool meets = false;
     for (const std::size_t k : {1u, 2u})
-      meets = meets || length(cross(Vec3(spheres[k].centre) - place, way.direction)) <= float(spheres[k].radius) * 1.00001f;
+      meets =
+          meets || length(cross(Vec3(spheres[k].centre) - place, way.direction)) <= float(spheres[k].radius) * 1.00001f;
     EXPECT_TRUE(meets);
   }
   EXPECT_EQ(aim.pdf_solid_angle(place, {0, -1, 0}), 0);

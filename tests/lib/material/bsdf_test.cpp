@@ -12,6 +12,7 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/material/tables/ggx_integrals.h"
+#include "tests/support/distribution.h"
 #include "tests/support/materials.h"
 
 namespace tempolux {
@@ -159,7 +160,8 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
           const integrals::Albedo e = integrals::ggx_albedo(c, alpha, rule);
           const AlbedoPair table = GgxAlbedo(float(alpha)).at(c);
           const double f90 = 1, f = metallic == 1 ? f0 : metallic + (1 - metallic) * f0;
-          const double corrected = bsdf.specular_albedo(direction(c, 0)).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
+          const double corrected =
+              bsdf.specular_albedo(direction(c, 0)).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
           const double total = corrected + bsdf.diffuse_reflectance(direction(c, 0)).r;
           EXPECT_LE(total, 1 + 1e-4) << roughness << ' ' << metallic << ' ' << f0 << ' ' << c;
           if (metallic == 1 && f0 == 1 && roughness >= 0.35f) { EXPECT_NEAR(total, 1, 1e-4); }
@@ -186,54 +188,9 @@ TEST(Bsdf, IsReciprocal) {
   }
 }
 
-// Directions of sample(), counted in 12 x 16 cells of equal cos and phi, against the pdf integrated over the cells (24
-// x 24 points each; samples below the horizon count as one more cell). Chi-square with k cells has the mean k - 1 and
-// the variance 2 (k - 1): the limit is mean + 5 sigma.
 void check_distribution(const Material& m, float cos_o) {
-  const Bsdf bsdf(m);
-  const Vec3 wo = direction(cos_o, 0.7f);
-  constexpr int kCos = 12, kPhi = 16, kSub = 64, kCount = 200000;
-  std::vector<double> expected(kCos * kPhi, 0), seen(kCos * kPhi, 0);
-  double inside = 0, lost = 0;
-  for (int i = 0; i < kCos * kSub; ++i)
-    for (int j = 0; j < kPhi * kSub; ++j) {
-      const Vec3 wi = direction((float(i) + 0.5f) / (kCos * kSub), 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
-      const double p = (double(bsdf.pdf_diffuse(wi, wo)) + bsdf.pdf_specular(wi, wo)) * 2 * std::numbers::pi /
-                       (kCos * kSub * double(kPhi * kSub));
-      expected[std::size_t(i / kSub * kPhi + j / kSub)] += p * kCount;
-      inside += p;
-    }
-  const PathRandom random(3, 5);
-  for (std::uint32_t i = 0; i < kCount; ++i) {
-    const Bsdf::Sample s = bsdf.sample(wo, random.get1(i, Purpose::lobe), random.get2(i, Purpose::scatter));
-    if (!(s.pdf_solid_angle > 0)) {
-      ++lost;
-      continue;
-    }
-    ASSERT_NEAR(s.pdf_solid_angle, bsdf.pdf_diffuse(s.wi, wo) + bsdf.pdf_specular(s.wi, wo), 2e-3f * s.pdf_solid_angle);
-    float phi = std::atan2(s.wi.y, s.wi.x);
-    if (phi < 0) phi += 2 * kPi;
-    const int a = std::min(kCos - 1, int(s.wi.z * kCos)), b = std::min(kPhi - 1, int(phi / (2 * kPi) * kPhi));
-    ++seen[std::size_t(a * kPhi + b)];
-  }
-  expected.push_back(std::max(0.0, 1 - inside) * kCount);
-  seen.push_back(lost);
-  double chi2 = 0, pooled_expected = 0, pooled_seen = 0;
-  int cells = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (expected[i] < 10) {
-      pooled_expected += expected[i];
-      pooled_seen += seen[i];
-      continue;
-    }
-    chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
-    ++cells;
-  }
-  if (pooled_expected > 10) {
-    chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
-    ++cells;
-  }
-  EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1))) << m.roughness << ' ' << cos_o << ' ' << cells;
+  test::expect_samples_follow_pdf(Bsdf(m), direction(cos_o, 0.7f),
+                                  std::to_string(m.roughness) + ' ' + std::to_string(cos_o));
 }
 
 /// Seen to fail: the pdf of single reflection alone.
@@ -254,7 +211,8 @@ TEST(Bsdf, NarrowLobesKeepTheirLight) {
   for (float roughness : {0.021f, 0.05f, 0.15f, 0.3f})
     for (float c : {1e-6f, 1e-3f, 0.05f, 0.5f, 1.0f}) {
       const Bsdf bsdf(metal(Rgb(1.0f), roughness));
-      EXPECT_NEAR(sampled_albedo(bsdf, direction(c, 1), false, 1 << 14).r, bsdf.specular_albedo(direction(c, 0)).r, 3e-3)
+      EXPECT_NEAR(sampled_albedo(bsdf, direction(c, 1), false, 1 << 14).r, bsdf.specular_albedo(direction(c, 0)).r,
+                  3e-3)
           << roughness << ' ' << c;
     }
 }

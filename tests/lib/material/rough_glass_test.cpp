@@ -11,6 +11,7 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/material/bsdf.h"
+#include "tests/support/distribution.h"
 #include "tests/support/materials.h"
 
 namespace tempolux {
@@ -87,14 +88,7 @@ TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
     }
     expected.push_back(std::max(0.0, 1 - inside) * kCount);
     seen.push_back(lost);
-    double chi2 = 0;
-    int cells = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (expected[i] < 10) continue;
-      chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
-      ++cells;
-    }
-    EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1))) << cos_o << ' ' << cells;
+    test::expect_chi_square(expected, seen, std::to_string(cos_o));
   }
 }
 

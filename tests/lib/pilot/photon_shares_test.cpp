@@ -25,8 +25,7 @@ struct Rooms {
     scene.add_room({9, -1, -1}, {11, 1, 1}, matte(Rgb(0.5f)));
     scene.add_point_light({0.1f, 0.2f, 0}, Rgb(seen_lamp));
     scene.add_point_light(other_place, Rgb(other_lamp));
-    for (int i = 0; i < 64; ++i)
-      places.push_back({{-0.9 + 0.2 * (i % 8), -1, -0.9 + 0.2 * (i / 8)}, 1, 1, {0, 1, 0}});
+    for (int i = 0; i < 64; ++i) places.push_back({{-0.9 + 0.2 * (i % 8), -1, -0.9 + 0.2 * (i / 8)}, 1, 1, {0, 1, 0}});
   }
   EmissionTable table() { return build_emission_table({&scene.frame(), 1}); }
   std::vector<formats::ViewLight> shares() {

@@ -86,7 +86,8 @@ TEST(SpheresAround, OnePlaceIsOneCell) {
 TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
   const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000),
                                   after = room({100.301, 2.2, -40.6}, 4, 3000);
-  EXPECT_EQ(formats::view_text({spheres_around(before, 700), {}}), formats::view_text({spheres_around(after, 700), {}}));
+  EXPECT_EQ(formats::view_text({spheres_around(before, 700), {}}),
+            formats::view_text({spheres_around(after, 700), {}}));
 }
 
 // ---- cameras on a lattice

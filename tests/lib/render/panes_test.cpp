@@ -174,14 +174,9 @@ TEST(Panes, PointsHoldLightBehindThem) {
     const SceneFrame frame = floor.frame();
     const Tracer tracer(frame);
     const Lights lights(frame, build_emission_table({&frame, 1}));
-    std::vector<IrradiancePoint> points(1);
-    points[0].position = {1.5f, 0, 0};
-    points[0].normal = {0, 1, 0};
-    PointOptions options;
-    options.light_samples = c.exact ? 1 : 16384;
-    update_direct(tracer, lights, nullptr, options, points);
+    const Rgb point = test::direct_at(tracer, lights, {1.5f, 0, 0}, c.exact ? 1 : 16384);
     for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(double(points[0].direct[k]) / c.irradiance(floor, 1.5, k), 1, c.exact ? 2e-5 : 0.01) << c.name;
+      EXPECT_NEAR(double(point[k]) / c.irradiance(floor, 1.5, k), 1, c.exact ? 2e-5 : 0.01) << c.name;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "lib/points/irradiance_points.h"
 #include "lib/render/path_tracer.h"
 #include "lib/trace/plates.h"
+#include "tests/support/frames.h"
 #include "tests/support/layers.h"
 #include "tests/support/materials.h"
 #include "tests/support/mean.h"
@@ -188,16 +189,11 @@ TEST(Plates, LightBehindThemIsDirect) {
       for (int k = 0; k < 3; ++k) direct[k].add(double(seen[Layer::direct][k]));
       caustic.add(double(seen[Layer::caustic].g));
     }
-    std::vector<IrradiancePoint> points(1);
-    points[0].position = {0, 0, 0};
-    points[0].normal = {0, 1, 0};
-    PointOptions options;
-    options.light_samples = light.sky ? 16384 : 1;
-    update_direct(tracer, lights, nullptr, options, points);
+    const Rgb point = test::direct_at(tracer, lights, {0, 0, 0}, light.sky ? 16384 : 1);
     for (int k = 0; k < 3; ++k) {
       const double expected = light.expected(k), tolerance = light.sky ? 0.02 : 5e-5;
       EXPECT_NEAR(direct[k].mean() * M_PI / 0.5 / expected, 1, tolerance) << light.name;
-      EXPECT_NEAR(double(points[0].direct[k]) / expected, 1, tolerance) << light.name;
+      EXPECT_NEAR(double(point[k]) / expected, 1, tolerance) << light.name;
     }
     EXPECT_EQ(caustic.mean(), 0) << light.name;
   }
