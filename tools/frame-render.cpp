@@ -50,6 +50,18 @@ void add_light_options(tools::Tool& tool, tools::RenderOptions& options) {
       ->check(tools::number_above(0));
 }
 
+void add_still_options(tools::Tool& tool, tools::StillOptions& still) {
+  tool.file_option("--still", still.frame,
+                   "EXR file, a frame of another moment during which the camera stands: pixels that change little are "
+                   "this frame and the change, which few samples of both moments measure; only the others are sampled");
+  tool.number_option("--still-frame", still.number, 0, 1 << 30, "with --still: the frame that it shows");
+  tool.file_option("--still-photons", still.light.photons, "with --still: --photons of that moment");
+  tool.file_option("--still-dynamic", still.light.dynamic, "with --still: --dynamic of that moment");
+  tool.file_option("--still-irradcache", still.light.irradcache, "with --still: --irradcache of that moment");
+  tool.file_option("--still-points", still.light.points, "with --still: --points of that moment");
+  tool.file_option("--still-high", still.light.high, "with --still: --high of that moment");
+}
+
 void add_options(tools::Tool& tool, tools::RenderOptions& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
@@ -89,6 +101,7 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
   tool.file_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
   tool.file_option("--base", options.base,
                    "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit");
+  add_still_options(tool, options.still);
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   tool.choice_option("--compression", options.compression, {"zip", "none"}, "EXR compression");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();

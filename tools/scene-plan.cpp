@@ -29,7 +29,7 @@ void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
   tool.choice_option("--quality", options.quality, {"draft", "final"},
                      "draft: more noise, in less than half of the time; final");
   tool.choice_option(
-      "--method", options.method, {"frames", "walkthrough", "auto", "preview"},
+      "--method", options.method, {"frames", "walkthrough", "auto", "preview", "still"},
       "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
       "walkthrough where it pays; preview: fast, with light textures from the photons of many frames");
   tool.choice_option(

@@ -45,7 +45,7 @@ void spread(const RoughFrame& rough, const Order& order, const AskedSamples& sam
                            .sample_work = samples.work,
                            .samples = samples.count,
                            .sample_error = samples.error,
-                           .ray_work = records ? rough.records * rough.record_ray : 0,
+                           .ray_work = records ? order.records * rough.records * rough.record_ray : 0,
                            .ray_error = records ? rough.record_error : 0,
                            .rays = way.rays,
                            .photons = order.photons,
@@ -56,6 +56,19 @@ void spread(const RoughFrame& rough, const Order& order, const AskedSamples& sam
   way.rays = best.rays;
   way.photons = best.photons;
   way.pixel_error = error_for_samples(best.samples);
+}
+
+/// The number k of ways_to_light(). of_pixels: P c n. `way`: work and error without the rays. If pictures share
+/// records, the rays of all of them together cost at most as much as the samples of one picture, or as k for this
+/// picture alone: a picture that is made alone makes all of them.
+int rays_of_records(const RoughFrame& rough, const Order& order, double of_pixels, const Way& way) {
+  const double ray = rough.records * rough.record_ray;
+  if (!(ray > 0)) return int(kFewestRays);
+  const auto best = [&](double share) {
+    return std::sqrt(Seen::kRecords * rough.record_error * way.work / (share * ray * way.error));
+  };
+  const double most = std::max(best(1), of_pixels / ray);
+  return int(nearest_on_grid(std::clamp(std::min(best(order.records), most), kFewestRays, kMostRays), 1));
 }
 
 /// Work and error of one way, with as many samples as the wish's pixel error asks for. map: visible caustic light comes
@@ -70,29 +83,28 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths)
-    fixed += double(order.photons) * Work::kRay * (1 + rough.photons_per_path);
+    fixed += double(order.photons) * Work::kLightRay * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{.method = method, .map = map, .photons = order.photons};
-  way.work = fixed + order.pixels * sample * samples;
-  way.error = order.filtered ? wanted / kFilterGain : wanted;
-  const double of_samples = way.error;
+  const double of_pixels = order.pixels * sample * samples;
+  way.work = fixed / order.pictures + of_pixels;
+  const double of_samples = order.filtered ? wanted / kFilterGain : wanted;
+  way.error = of_samples * (order.filtered ? Seen::kSamples : Seen::kIndependent);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
-  if (map) way.error += map_error(rough);
+  if (map) way.error += Seen::kSmooth * map_error(rough);
   // A map holds caustic light, records indirect light; samples find the other layers.
   const MissedLight caustic = map ? MissedLight{} : effort.missed_caustic,
                     indirect = records ? MissedLight{} : effort.missed_indirect;
-  way.error += caustic.left(samples);
-  way.error += indirect.left(samples);
+  way.error += Seen::kSmooth * (caustic.left(samples) + indirect.left(samples));
   way.never = caustic.never;
   way.uncertain = indirect.uncertain;
   const double lone = caustic.lone + indirect.lone;
-  way.error += lone * lone;
+  way.error += Seen::kSmooth * lone * lone;
   if (records) {
-    const double ray = rough.records * rough.record_ray;
-    const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
-    way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));
-    way.work += ray * way.rays;
-    way.error += rough.record_error / way.rays;
+    way.work += order.records * rough.records * Work::kRecord;
+    way.rays = rays_of_records(rough, order, of_pixels, way);
+    way.work += order.records * rough.records * rough.record_ray * way.rays;
+    way.error += Seen::kRecords * rough.record_error / way.rays;
   }
   if (order.filtered && map) spread(rough, order, {sample, samples, of_samples}, way);
   if (rough.wanted_of > 0 && variance > rough.wanted_of)

@@ -14,27 +14,29 @@ namespace tempolux {
 enum class IndirectMethod : std::uint8_t { records, gather, paths };
 inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"};
 
-/// The picture to be rendered. Its light is charged to it alone, even if other frames share the files.
+/// The picture to be rendered, and the share of the light's files that it is charged with: other pictures of the shot
+/// read them, too.
 struct Order {
   double pixels = 0;                ///< number of pixels of the picture
   std::uint64_t photons = 700'000;  ///< light paths of the photon map, at least
   bool filtered = true;             ///< lib/filter reduces the noise of samples
   std::uint64_t most_photons = 0;   ///< light paths of the map, at most (AskedPicture)
-  double pictures = 1;              ///< number of pictures that share light paths above `photons`
+  double pictures = 1;              ///< number of pictures that share photons and points
+  double records = 1;               ///< share of the picture's records that it is charged with
 };
 
 /// A way to light, with its estimated work and error.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;           ///< visible caustic light comes from photons; else camera paths find it
-  int rays = 0;               ///< gather rays per record
-  double work = 0;            ///< shadow rays, for the whole picture
-  double error = 0;           ///< squared error, mean over the pixels, in the unit of SampleEffort
-  double pixel_error = 1;     ///< factor for the wish's pixel error
-  std::uint64_t photons = 0;  ///< light paths of the photon map
-  bool measured = true;       ///< false: work and error are lower bounds
-  double never = 0;           ///< MissedLight::never of the layers that the way samples
-  double uncertain = 0;       ///< MissedLight::uncertain of these layers
+  bool map = false;        ///< visible caustic light comes from photons; else camera paths find it
+  int rays = 0;            ///< gather rays per record
+  double work = 0;         ///< shadow rays, for the whole picture and its share of the light
+  double error = 0;        ///< squared error in the unit of SampleEffort, summed over boxes of 1, 5, 15 pixels (Seen)
+  double pixel_error = 1;  ///< factor for the wish's pixel error
+  std::uint64_t photons = 0;                     ///< light paths of the photon map
+  bool measured = true;                          ///< false: work and error are lower bounds
+  double never = 0;                              ///< MissedLight::never of the layers that the way samples
+  double uncertain = 0;                          ///< MissedLight::uncertain of these layers
   double score() const { return work * error; }  ///< the least is best
 };
 
@@ -43,14 +45,15 @@ struct Way {
 /// of work c and variance V. It has M records of k gather rays; a ray costs the work g, and a record has the squared
 /// error e / k.
 ///
-///     work = fixed + P c n + M g k,   error = E / G + e / k + B,   n = V / E
+///     work = F / p + P c n + r M (g k + h),   error = s E / G + 2.1 e / k + 3 B,   n = V / E
 ///
-/// fixed: work of photons and points. E: squared error that the wish allows in all light but layer indirect, which all
-/// ways sample. G: factor by which the filter reduces the noise of samples; it does not reduce e / k, because
-/// neighbouring pixels share records and their errors. B: error that does not fall with work, of a density of caustic
-/// photons and of light that photons show and paths miss. The product is least for
+/// F: work of photons and points, which p pictures share. r: the picture's share of its records. h: work of a record
+/// without its rays. E: squared error that the wish allows in all light but layer indirect, which all ways sample. G:
+/// factor by which the filter reduces the noise of samples; it does not reduce e / k, because neighbouring pixels share
+/// records and their errors. B: error that does not fall with work, of a density of caustic photons and of light that
+/// photons show and paths miss. s, 2.1 and 3: what is seen of an error (Seen). The product is least for
 ///
-///     k = sqrt(e (fixed + P c n) / (M g (E / G + B)))
+///     k = sqrt(2.1 e (work without rays) / (r M g (s E / G + 3 B)))
 ///
 /// Work and error are those with the wish's light paths and pixel error. A filtered picture with a map then gets the
 /// numbers of spread_work(), with less work and the same seen error. Way::pixel_error also allows for the variance of

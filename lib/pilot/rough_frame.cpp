@@ -85,7 +85,8 @@ Samples samples_of(const RenderScene& scene, const CameraView& view, const Known
 
 /// Work of one sample, in shadow rays.
 double work_of(const RayCounts& counts, const Samples& samples) {
-  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) /
+  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) +
+          Work::kPointRead * double(counts.points_read)) /
          (kSamples * double(samples.size()));
 }
 
@@ -322,8 +323,9 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
     all += pair.counts;
   }
   if (gathered > 0)
-    rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays) + double(all.distance_rays)) /
-                       (gathered * kRays);
+    rough.record_ray =
+        (Work::kGatherRay * double(all.rays) + double(all.shadow_rays) + Work::kRay * double(all.distance_rays)) /
+        (gathered * kRays);
 }
 
 /// Adds light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found.
@@ -400,7 +402,10 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
   rough.gather.missed_caustic.lone = lone;
   // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
   // needs this ray, which ends at its first hit.
-  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
+  const double onward_shadow = double(counts.onward) - 2 * double(counts.onward_bounce),
+               onward = Work::kRay * double(counts.onward_bounce) + onward_shadow +
+                        Work::kPointRead * double(counts.points_read);
+  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - onward;
   rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }
 

@@ -12,9 +12,6 @@ namespace {
 constexpr double kPhotonsOfAPlace = PhotonLightOptions{}.caustic_neighbours;
 /// Sides of the boxes, in pixels, over which an error is seen: those of tests/bench/steady.py.
 constexpr double kSeenBoxes[] = {1, 5, 15};
-/// Squared errors of the three boxes together over that of single pixels, measured: of filtered samples and of records
-/// (docs/methods/ways.md).
-constexpr double kSamplesSeen = 1.24, kRecordsSeen = 2.1;
 /// Number of pixels over which the filter averages inside surfaces: it leaves .03 to .09 of the samples' squared error
 /// there (docs/notebook/st-filter.md).
 constexpr double kFilterPixels = 16;
@@ -34,9 +31,9 @@ class Spread {
         sample_error_(asked.sample_error * std::pow(asked.samples, 1 - stratified_rate())) {}
 
   double error(const SpreadWork& with) const {
-    return kSamplesSeen * sample_error_ * std::pow(with.samples, -kFiltered) +
+    return Seen::kSamples * sample_error_ * std::pow(with.samples, -kFiltered) +
            seen_map_error(rough_, asked_.pixels, with.photons) +
-           (with.rays > 0 ? kRecordsSeen * asked_.ray_error / with.rays : 0);
+           (with.rays > 0 ? Seen::kRecords * asked_.ray_error / with.rays : 0);
   }
   double work(const SpreadWork& with) const {
     return asked_.pixels * asked_.sample_work * asked_.samples * with.samples + asked_.ray_work * with.rays +
@@ -47,7 +44,7 @@ class Spread {
   }
 
  private:
-  double path() const { return Work::kRay * (1 + rough_.photons_per_path); }
+  double path() const { return Work::kLightRay * (1 + rough_.photons_per_path); }
   double further(std::uint64_t photons) const { return double(photons) - double(asked_.photons); }
 
   const RoughFrame& rough_;

@@ -15,6 +15,13 @@ namespace tempolux {
 /// of the box, and the filter averages g = 16 pixels. Without light the error is 0.
 double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t photons);
 
+/// Squared errors of boxes of 1, 5 and 15 pixels together over that of single pixels (docs/methods/ways.md): of
+/// filtered samples and of records, measured; of independent samples, 1 + 1/25 + 1/225; of what differs little over 15
+/// pixels.
+struct Seen {
+  static constexpr double kSamples = 1.24, kRecords = 2.1, kIndependent = 1.04, kSmooth = 3;
+};
+
 /// A filtered picture with a map of caustic photons, with the samples that the wish's pixel error asks for.
 struct AskedPicture {
   double pixels = 0;        ///< of the picture
@@ -39,11 +46,9 @@ struct SpreadWork {
 /// The numbers with the least work whose seen error is at most that of `asked`. The share s of the samples is 2^(-i/4);
 /// it is at least 1/8 and leaves at least 4 samples a pixel. Light paths are doubled; rays are halved, doubled or
 /// quadrupled. The seen error is
-///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays.
+///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays      (Seen).
 /// E is the squared error of the asked samples; n stratified samples leave n^(1-r) times the error of independent ones
-/// (stratified_rate()). e is the squared error of records at one ray. The seen error adds the squared errors of boxes
-/// of 1, 5 and 15 pixels. 1.24 and 2.1 are the ratios of this sum to the squared error of single pixels, measured for
-/// samples and for records (docs/methods/ways.md).
+/// (stratified_rate()). e is the squared error of records at one ray.
 SpreadWork spread_work(const RoughFrame& rough, const AskedPicture& asked);
 
 }  // namespace tempolux

@@ -35,6 +35,9 @@ constexpr std::size_t kFewestStates = 3;
 /// A segment departs from the shot's way to light if the shot's way needs more than this many times the work of the
 /// segment's best way; departs() allows for the pilots' error besides.
 constexpr double kDeparture = 1.3;
+/// Share of its records that a state of light gathers beside those of the static scene, before pilots know where movers
+/// matter: .34 in furnished_day, .15 in evening_shot, as CPU time.
+constexpr double kMovedRecords = 0.3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
@@ -74,13 +77,17 @@ struct Look {
   }
 };
 
+/// How the pictures of a segment share light (Order::pictures, Order::records).
+struct Sharing {
+  double new_share = 0;  ///< Decisions::new_share
+  double pictures = 1, records = 1;
+};
+
 class FramePilot {
  public:
-  /// tree: the pilots of a segment share the tree of its static scene. pictures: Order::pictures.
-  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree,
-             double pictures = 1)
+  /// tree: the pilots of a segment share the tree of its static scene.
+  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree)
       : kinds_(kinds),
-        pictures_(pictures),
         wish_(wish),
         frame_(source.at(number, true)),
         table_(source.emission(frame_.frame)),
@@ -89,13 +96,18 @@ class FramePilot {
         lights_(frame_, table_) {}
 
   /// Renders a rough frame of `places` places. It ends early once enough(look) is true.
-  Look look(int places, const std::function<bool(const Look&)>& enough) {
+  Look look(int places, const Sharing& sharing, const std::function<bool(const Look&)>& enough) {
     const Lights& aimed_lights = aimed();
     const auto look_of = [&](const RoughFrame& rough) {
       Look look;
       look.paths = rough.paths_of_light;
-      const Order order{double(wish_.width) * wish_.height, look.paths, wish_.filter != 0,
-                        wish_.filter != 0 ? std::uint64_t(kMostTimesPhotons) * wish_.photons : 0, pictures_};
+      const bool filtered = wish_.filter != 0;
+      const Order order{.pixels = double(wish_.width) * wish_.height,
+                        .photons = look.paths,
+                        .filtered = filtered,
+                        .most_photons = filtered ? std::uint64_t(kMostTimesPhotons) * wish_.photons : 0,
+                        .pictures = sharing.pictures,
+                        .records = sharing.records};
       look.ways = ways_to_light(rough, order, kinds_.find("caustic") != std::string::npos);
       return look;
     };
@@ -134,7 +146,6 @@ class FramePilot {
   }
 
   std::string kinds_;
-  double pictures_;
   const Wish& wish_;
   SceneFrame frame_;
   EmissionTable table_;
@@ -175,15 +186,17 @@ struct Looking {
   const Wish& wish;
   bool media;
   std::function<std::unique_ptr<FramePilot>(int)> pilot_of;
+  std::function<Sharing(const FramePilot&)> sharing_of;
   std::optional<IndirectMethod> also;  ///< a method that must be measured, too
 };
-std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle) {
-  const auto& [frames, wish, media, pilot_of, also] = looking;
+std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, Sharing& sharing) {
+  const auto& [frames, wish, media, pilot_of, sharing_of, also] = looking;
   const int places = (kPilotPlaces + int(frames.size()) - 1) / int(frames.size());
   std::vector<Look> looks;
   for (const int frame : frames) {
     std::unique_ptr<FramePilot> pilot = pilot_of(frame);
-    looks.push_back(pilot->look(places, [&](const Look& look) {
+    if (looks.empty()) sharing = sharing_of(*pilot);
+    looks.push_back(pilot->look(places, sharing, [&](const Look& look) {
       const std::optional<Way> best = best_of(look.ways, looking.wish, looking.media);
       return (!best || best->measured) && (!looking.also || look.knows(*looking.also));
     }));
@@ -192,7 +205,7 @@ std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& m
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const std::optional<Way> best = best_of(joined_ways(looks), wish, media);
     if (!best || looks[i].knows(best->method)) continue;
-    looks[i] = pilot_of(frames[i])->look(places, [&](const Look& look) { return look.knows(best->method); });
+    looks[i] = pilot_of(frames[i])->look(places, sharing, [&](const Look& look) { return look.knows(best->method); });
     i = std::size_t(-1);  // the best way may have changed
   }
   return looks;
@@ -265,10 +278,17 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
 
 /// Number of pictures that share records: the largest power of two whose joint records cost at most twice as much as
 /// one picture's own records. A single requested frame then costs at most twice its minimum.
-int pictures_together(std::size_t pictures, const Decisions& d) {
+int pictures_together(std::size_t pictures, double new_share) {
   int together = 1;
-  while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
+  while (std::size_t(together) < pictures && Decisions::records_of(2 * together, new_share) <= 2) together *= 2;
   return together;
+}
+
+/// A picture's part of the records that consecutive pictures of a segment share.
+double part_of_records(const PlannedSegment& segment, double new_share) {
+  const std::size_t pictures = segment.views().size();
+  const double together = std::min<double>(pictures_together(pictures, new_share), double(pictures));
+  return Decisions::records_of(together, new_share) / together;
 }
 
 /// Decides which parts of a frame's light (photons, points, records) are derived from the light of the static scene.
@@ -284,12 +304,10 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
                      "--moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  const double together = std::min(double(d.together), double(segment.views().size())),
-               static_work = d.records_of(together) / together;
   const MovingChoice choice =
       wish.moving == "auto"
           ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds, tree).moving(), states.size(),
-                          static_work)
+                          part_of_records(segment, d.new_share))
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
@@ -415,34 +433,44 @@ double pictures_of_a_map(const PlannedSegment& segment, const Wish& wish, bool m
   return std::max(1.0, may_share_static(segment, wish, media) ? pictures / 2 : pictures / states);
 }
 
+/// If the light of the static scene is shared, each state gathers further records where movers matter.
+Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, const FramePilot& pilot) {
+  Sharing sharing{.pictures = pictures_of_a_map(segment, wish, media)};
+  if (segment.views().size() < 2) return sharing;
+  sharing.new_share = pilot.new_share(segment);
+  const double part = part_of_records(segment, sharing.new_share);
+  if (segment.states().size() == 1) sharing.records = part;
+  else if (may_share_static(segment, wish, media)) sharing.records = std::min(1.0, part + kMovedRecords);
+  return sharing;
+}
+
 /// What pilots found in the frames `d.looked`.
 struct LookedAt {
   StaticTree tree;
   std::unique_ptr<FramePilot> middle;
   std::vector<Look> looks;
+  Sharing sharing;
 
   /// also: a method that must be measured, too.
   LookedAt(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
            std::optional<IndirectMethod> also) {
-    const double pictures = pictures_of_a_map(segment, wish, media);
-    const auto pilot_of = [&](int frame) {
-      return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree, pictures);
-    };
-    looks = look_at({d.looked, wish, media, pilot_of, also}, middle);
+    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
+    const auto sharing_of = [&](const FramePilot& pilot) { return sharing_in(segment, wish, media, pilot); };
+    looks = look_at({d.looked, wish, media, pilot_of, sharing_of, also}, middle, sharing);
   }
 };
 
 /// Decides how many pictures share records.
-void decide_together(const PlannedSegment& segment, const FramePilot& middle, Decisions& d) {
-  if (d.records()) d.new_share = middle.new_share(segment);
-  d.together = pictures_together(segment.views().size(), d);
+void decide_together(const PlannedSegment& segment, double new_share, Decisions& d) {
+  if (d.records()) d.new_share = new_share;
+  d.together = pictures_together(segment.views().size(), d.new_share);
 }
 
 /// Decides about the light by what pilots found; `segment` supplies the pictures and the movers.
 void decide_by_looks(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                      LookedAt& looked, Decisions& d) {
   join(looked.looks, wish, media, d);
-  decide_together(segment, *looked.middle, d);
+  decide_together(segment, looked.sharing.new_share, d);
   decide_moving(segment, wish, media, source, looked.tree, d);
   if (may_share_static(segment, wish, media) && d.moving == MovingMethod::anew) {
     // Each state traces its own map, so further light paths cost more than was planned.
@@ -473,7 +501,7 @@ void copy_shot(const PlannedSegment& segment, const Decisions& shot, const Looke
   d.photon_paths = shot.photon_paths;
   if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
   d.reasons.push_back({kRecordsReason, "as in the whole shot; here " + because(joined_ways(looked.looks))});
-  decide_together(segment, *looked.middle, d);
+  decide_together(segment, looked.sharing.new_share, d);
   if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
   if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
   for (const char* stage : {kMovingReason, kSplitReason}) {

@@ -17,8 +17,8 @@ namespace tempolux {
 enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
-enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
-inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
+enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview, still };
+inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview", "still"};
 
 /// The enumerator with this name, in a list of names by value; empty if no enumerator has it.
 template <class Enum, std::size_t n>
@@ -97,7 +97,8 @@ struct Decisions {
   int together = 1;      ///< number of consecutive pictures whose cameras share records
 
   /// Records for the cameras of this many consecutive pictures, as a multiple of one picture's records.
-  double records_of(double pictures) const { return 1 + new_share * (pictures - 1); }
+  static double records_of(double pictures, double new_share) { return 1 + new_share * (pictures - 1); }
+  double records_of(double pictures) const { return records_of(pictures, new_share); }
   bool walk = false;        ///< true: key frames and warping pay; METHOD=auto then makes a walkthrough
   std::string view;         ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;  ///< frames for which pilots ran

@@ -1,6 +1,8 @@
 // lib/plan/picture_files.cpp -- the files of pictures: rendered, filtered, with smoke.
 #include <iomanip>
+#include <optional>
 #include <sstream>
+#include <tuple>
 
 #include "formats/hash.h"
 #include "lib/plan/graph_builder.h"
@@ -11,13 +13,61 @@ namespace {
 /// The audit traces this share of the frame's rays. With its look-ups an audit takes less than 3 % of a run.
 constexpr const char* kAudit = "--audit 0.02";
 
+/// The frame of METHOD=still that gives the pixels that stay has this many times less pixel error: 3.4 times the
+/// samples. Every frame shows its noise, so the noise must not be seen (docs/methods/still.md).
+constexpr double kFinerStill = 0.25;
+
+/// The options of a frame's pixels, with `finer` times the pixel error.
+std::string pixels_with(const GraphBuilder& g, int frame, double finer) {
+  if (!g.wish.preset_pixels) return g.wish.pixels;
+  std::ostringstream words;
+  words << g.wish.pixels << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error * finer;
+  return words.str();
+}
+
+/// METHOD=still: the frame that gives other frames the pixels that stay: the middle of the shot. Empty if the camera of
+/// `frame` is another one there, if it has blur, or if the frames need different kinds of files.
+std::optional<int> still_frame(const GraphBuilder& g, int frame) {
+  if (g.wish.method != FrameMethod::still || g.plan.media) return {};
+  const std::optional<int> middle = g.plan.middle();
+  if (!middle) return {};
+  const PlannedFrame &there = g.state(*middle), &here = g.state(frame);
+  const auto files = [&](int of) {
+    const Decisions& d = g.decided(of);
+    return std::tuple(d.kinds, d.indirect, d.caustic_map, d.split);
+  };
+  if (there.camera != here.camera || g.segment(frame).is_blurred() || files(*middle) != files(frame)) return {};
+  return there.picture;
+}
+
+/// A frame before the filter (stage raw), or without one. With METHOD=still it takes the pixels that stay from another
+/// frame; before the filter it is this frame where both show the same picture.
+std::string sampled_picture(GraphBuilder& g, const StageInfo& stage, int frame, const std::string& words,
+                            const std::string& channels) {
+  Command c = frame_command(g, frame, pixels_of(g, frame) + words, channels);
+  const std::optional<int> still = still_frame(g, frame);
+  if (!still) return g.add(stage, frame, c);
+  const int from = *still;
+  const std::string base =
+      g.add(stage_in("still"), from, frame_command(g, from, pixels_with(g, from, kFinerStill) + words, channels));
+  if (g.state(from).light == g.state(frame).light) return stage.folder == "raw" ? base : g.add(stage, frame, c);
+  c.file("--still", base);
+  c.option("--still-frame " + std::to_string(from));
+  Command light{"", {}, ""};
+  add_light(g, from, light);
+  c.content += light.content;
+  for (std::string word : words_of(light.words)) c.option(word.starts_with("--") ? "--still-" + word.substr(2) : word);
+  c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
+  return g.add(stage, frame, c);
+}
+
 std::string clear_picture(GraphBuilder& g, int frame) {
   const bool walk =
       !g.plan.media && (g.wish.method == FrameMethod::walkthrough ||
                         (g.wish.method == FrameMethod::automatic && g.decided(frame).walk && g.wish.filter <= 1));
   if (walk) return walked_picture(g, frame);
   if (g.wish.filter > 0) return filtered_picture(g, frame, g.wish.channels);
-  return g.add(stage_in("pictures"), frame, frame_command(g, frame, pixels_of(g, frame), g.wish.channels));
+  return sampled_picture(g, stage_in("pictures"), frame, "", g.wish.channels);
 }
 
 }  // namespace
@@ -34,12 +84,7 @@ std::string in_motion(const GraphBuilder& g, int frame, const std::string& chann
   return hash_of_texts({before.light, before.camera, here.light, here.camera, after.light, after.camera});
 }
 
-std::string pixels_of(const GraphBuilder& g, int frame) {
-  if (!g.wish.preset_pixels) return g.wish.pixels;
-  std::ostringstream words;
-  words << g.wish.pixels << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
-  return words.str();
-}
+std::string pixels_of(const GraphBuilder& g, int frame) { return pixels_with(g, frame, 1); }
 
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels) {
   Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_motion(g, frame, channels)};
@@ -59,15 +104,14 @@ int shown_by(const GraphBuilder& g, int frame, const std::string& channels) {
 
 std::string filtered_picture(GraphBuilder& g, int frame, const std::string& channels) {
   // The frames of a window need independent noise.
-  const std::string pixels =
-      pixels_of(g, frame) + (g.wish.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
+  const std::string words = std::string(g.wish.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
   const std::string raw_names = raw_channels(g.wish, channels);
   Command c;
   std::size_t position = 0;
   for (int f = frame - g.wish.filter / 2; f <= frame + g.wish.filter / 2; ++f) {
     if (f != g.clamped(f)) continue;
     const int like = shown_by(g, f, raw_names);
-    const std::string raw = g.add(stage_in("raw"), like, frame_command(g, like, pixels, raw_names));
+    const std::string raw = sampled_picture(g, stage_in("raw"), like, words, raw_names);
     if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
     if (f == frame) position = c.inputs.size();
   }

@@ -258,6 +258,11 @@ bool PlannedSegment::is_blurred() const {
   });
 }
 
+std::optional<int> Plan::middle() const {
+  const auto holds = [&](const PlannedSegment& s) { return s.first <= last_frame / 2 && last_frame / 2 <= s.last; };
+  return std::ranges::any_of(segments, holds) ? std::optional(last_frame / 2) : std::nullopt;
+}
+
 const PlannedSegment& Plan::segment_of(int frame) const {
   const auto after = std::ranges::upper_bound(segments, frame, {}, &PlannedSegment::first);
   if (after == segments.begin() || std::prev(after)->last < frame)
@@ -266,7 +271,7 @@ const PlannedSegment& Plan::segment_of(int frame) const {
 }
 
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
-               const MediaHash& media, std::span<const int> others) {
+               const MediaHash& media, std::span<const int> others, bool with_middle) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
   require_lights(scene);
   Plan plan;
@@ -292,6 +297,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     needed.insert(shown);
   }
   for (const int frame : others) needed.insert(std::clamp(frame, 0, plan.last_frame));
+  if (with_middle) needed.insert(plan.last_frame / 2);
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));

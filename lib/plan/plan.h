@@ -72,6 +72,8 @@ struct Plan {
   bool media = false;  ///< true if the scene has media
   std::vector<std::string> warnings;
 
+  /// The frame in the middle of the animation, if its segment is in the plan (make_plan).
+  std::optional<int> middle() const;
   /// The segment that holds a frame of the animation. Throws std::out_of_range if it is not in the plan.
   const PlannedSegment& segment_of(int frame) const;
 };
@@ -81,12 +83,12 @@ using MediaHash = std::function<std::string(int frame)>;
 
 /// Evaluates the segments that hold `frames` and `others`, and compares their frames by content hashes. Neither file
 /// times nor the file's declarations of what is animated count. `others` are frames that the requested frames need:
-/// neighbours and keys. A requested frame outside the animation shows the animation's closest frame, with a warning.
-/// Decisions keep their defaults.
+/// neighbours and keys. with_middle: Plan::middle() is needed, too. A requested frame outside the animation shows the
+/// animation's closest frame, with a warning. Decisions keep their defaults.
 ///
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Throws InputError for a scene without light and
 /// for a scene that cannot be evaluated, std::invalid_argument for an empty `frames`.
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
-               const MediaHash& media = {}, std::span<const int> others = {});
+               const MediaHash& media = {}, std::span<const int> others = {}, bool with_middle = false);
 
 }  // namespace tempolux

@@ -41,7 +41,8 @@ struct StageInfo {
   std::string_view work;
 
   std::string_view tool() const { return command.substr(0, command.find(' ')); }
-  bool makes_pictures() const { return part == Part::frames && extensions == ".exr"; }
+  /// Frames that a user may ask for; a frame of `still` serves other frames alone.
+  bool makes_pictures() const { return part == Part::frames && extensions == ".exr" && folder != "still"; }
 };
 
 inline constexpr std::string_view kUsual = "-o % --stats @.json";
@@ -83,6 +84,8 @@ inline constexpr auto kStages = std::to_array<StageInfo>({
     {"walk", "ibr-warp", "ibr-warp", Sees::camera, "", ".done", Part::frames, "distance of keys", 0.2, 210, "warp"},
     {"walked", "frame-render --mask", "frame-render", Sees::camera, "", ".exr", Part::frames, "warped from keys", 7.2,
      210, "render"},
+    {"still", "frame-render (still)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels that stay",
+     28, 329, kRendering},
     {"raw", "frame-render (raw)", "frame-render", Sees::camera, kUsual, ".exr", Part::frames, "pixels", 8.3, 329,
      kRendering},
     {"filtered", "st-filter", "st-filter", Sees::files, kUsual, ".exr", Part::frames, "noise filter", 0.8, 248,

@@ -135,9 +135,10 @@ class EyeTracer {
   /// counts_.onward.
   void count(std::uint64_t rays, std::uint64_t& as, const PathState& state) const {
     as += rays;
-    if (state.result == &parts_.onward)
-      // A nearest hit with surface and material costs twice as much as a shadow ray (Work::kRay).
-      counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;
+    if (state.result != &parts_.onward) return;
+    const bool bounce = &as == &counts_.bounce;
+    counts_.onward += bounce ? 2 * rays : rays;
+    if (bounce) counts_.onward_bounce += rays;
   }
 
   const RenderScene& scene_;

@@ -148,7 +148,8 @@ struct RayCounts {
   std::uint64_t lookups = 0;      ///< first Lambert lobes whose indirect light was known (KnownLight::indirect)
   std::uint64_t gathered = 0;     ///< first Lambert lobes whose indirect light a gather ray had to estimate
   std::uint64_t points_read = 0;  ///< hits whose light was that of a point (KnownLight::point_light)
-  std::uint64_t onward = 0;       ///< cost of the rays of PathParts::onward, in shadow rays
+  std::uint64_t onward = 0;       ///< cost of the rays of PathParts::onward: 2 for each of onward_bounce, 1 for others
+  std::uint64_t onward_bounce = 0;  ///< nearest hits of PathParts::onward
   RayCounts& operator+=(const RayCounts& o) {
     camera += o.camera;
     bounce += o.bounce;
@@ -157,6 +158,7 @@ struct RayCounts {
     gathered += o.gathered;
     points_read += o.points_read;
     onward += o.onward;
+    onward_bounce += o.onward_bounce;
     return *this;
   }
 };

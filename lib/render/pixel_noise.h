@@ -43,6 +43,8 @@ class PixelNoise {
   /// Stores the sums over the two halves of a pixel's first samples. onward_rays: cost of their part onward, in shadow
   /// rays. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
+  /// Sets the radiance of a pixel if note() got differences between two frames. Call after note().
+  void set_level(std::size_t pixel, double mean) { pixels_[pixel].mean = mean; }
   /// Computes the radiance of the picture. Call after note() of all pixels and before wanted_at().
   void all_noted();
   /// Number of samples of each part that a pixel is to have in all: `times` as many as pixel_error asks for, at least

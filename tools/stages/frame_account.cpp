@@ -104,6 +104,27 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   return numbers;
 }
 
+void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise) {
+  const auto number = [&](const std::string& name) {
+    const auto found = from.numbers.find("tempolux:" + name);
+    return found == from.numbers.end() ? 0.0 : found->second;
+  };
+  const bool any = noise.known();
+  const auto join = [&](const std::string& name, Noise& of) {
+    const Noise kept{number(name + ".linear"), number(name + ".linear_error"), number(name + ".codes"),
+                     number(name + ".codes_error")};
+    const auto joined = [&](double Noise::*value) {
+      const double square = any ? std::max(0.0, of.*value) * std::max(0.0, of.*value) : 0;
+      return std::sqrt(share_anew * square + (1 - share_anew) * (kept.*value) * (kept.*value));
+    };
+    of = {joined(&Noise::linear), joined(&Noise::linear_error), joined(&Noise::codes), joined(&Noise::codes_error)};
+  };
+  join("noise", noise.image);
+  for (std::size_t l = 0; l < kLayerCount; ++l) join("noise." + std::string(kLayerNames[l]), noise.layer[l]);
+  if (!(noise.exposure > 0)) noise.exposure = number("noise.exposure");
+  noise.pixels += std::size_t(number("noise.pixels"));
+}
+
 void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
                     const FrameOptions& asked, const std::vector<std::string>& object_names) {
   for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);

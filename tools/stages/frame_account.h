@@ -15,6 +15,10 @@ namespace tempolux::tools {
 /// Empty if the frame's noise is unknown. audit: entries of FrameAudit, if there was an audit.
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit);
 
+/// Joins the noise of a frame's new pixels, a share of all pixels, with that of the frame `from` that gives the others
+/// (--still). Variances are means over pixels. The noise of `from` is that of its own account.
+void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise);
+
 /// Reports the figures: in --stats, as lines with --verbose, as a warning if `asked` (FrameOptions::seen_error) was not
 /// reached, and as a warning for each biased layer (is_biased). object_names: the names in the scene's file, by
 /// id.object.

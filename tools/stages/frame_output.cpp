@@ -23,13 +23,14 @@ FrameOutputs::FrameOutputs(const std::string& path, bool halves) {
 }
 
 void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
-                         const BaseFrame& base) {
+                         const KeptPixels& kept) {
   const std::set<std::uint32_t> objects = objects_of(data, description);
   const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     Image image = data;
     add_colour_channels(*parts[i], description.channels, image);
-    if (!base.mask.empty()) keep_base_pixels(base.mask, base.base, data.channels.size(), image);
+    if (!kept.anew.empty()) keep_base_pixels(kept.anew, kept.from, data.channels.size(), image);
+    if (kept.change) add_change(*kept.change, image);
     describe_frame(image, description.identity, description.frame, description.fps, description.history,
                    description.camera);
     image.numbers["tempolux:samples"] = parts[i]->samples;

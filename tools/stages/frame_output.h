@@ -9,8 +9,8 @@
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/render/still_pixels.h"
 #include "tools/common/tool_main.h"
-#include "tools/stages/base_frame.h"
 
 namespace tempolux::tools {
 
@@ -27,14 +27,20 @@ struct FrameDescription {
   ExrWriteOptions exr;
 };
 
+/// The pixels that another frame gives.
+struct KeptPixels {
+  const std::vector<std::uint8_t>& anew;  ///< by pixel: 0 if `from` gives it; empty: no pixel is kept
+  const Image& from;
+  const StillPixels* change = nullptr;  ///< what is added to them; null: nothing
+};
+
 class FrameOutputs {
  public:
   /// Creates the files at once, so that an unwritable place is reported before the work.
   FrameOutputs(const std::string& path, bool halves);
-  /// Writes and commits all files. `data` holds the data channels already; pixels that were not traced are copied from
-  /// `base`.
+  /// Writes and commits all files. `data` holds the data channels already.
   void write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
-             const BaseFrame& base);
+             const KeptPixels& kept);
 
  private:
   std::vector<Output> outputs_;  ///< the mean, then half a and half b

@@ -170,7 +170,7 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
                       tool.history_line()};
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
-                   helper_frames(tool.common().frames, wish));
+                   helper_frames(tool.common().frames, wish), wish.method == FrameMethod::still);
   const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); },
                            [&](int frame) { return input_.emission(frame); }, camera};
   tool.stats().phase("pilots", true);

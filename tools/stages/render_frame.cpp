@@ -14,6 +14,7 @@
 #include "lib/render/blurred_albedo.h"
 #include "lib/render/data_channels.h"
 #include "lib/render/shutter.h"
+#include "lib/render/still_pixels.h"
 #include "lib/pilot/hidden_light.h"
 #include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
@@ -219,7 +220,13 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   const bool is_reference = options.integrator == "path";
   const SolidAround around(tracer);
   const RenderScene scene{tracer, lights, !is_reference && lights.has_suns(), Inside(around(view.eye(), {}, 0))};
-  if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
+  std::optional<StillMoment> moment;
+  if (!options.still.frame.empty()) {
+    tool.stats().phase("still moment");
+    moment.emplace(tool, input, options.still, view, frame_options.seed);
+  }
+  if (moment) lights = lights.guided(moment->guide());
+  else if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 
   const std::unique_ptr<const Shutter> shutter =
@@ -230,8 +237,16 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   Image image{options.width, options.height, {}, {}, {}, {}};
   std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
   if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
+  StillPixels still;
+  if (moment) {
+    still = still_pixels({scene, view, frame_options.known, frame_options.seed, nullptr},
+                         moment->sampler(frame_options.seed), frame_options);
+    frame_options.mask = still.anew;
+    tool.stats().set("sampled_anew", still.share_anew());
+  }
   RenderedFrame rendered = render_frame(scene, view, frame_options);
 
+  if (moment) add_noise_of_kept(moment->image(), still.share_anew(), rendered.noise);
   const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered, options.light_paths};
   add_light_without_paths(tool, options, shot, rendered);
   if (number == tool.common().frames.front()) warn_of_missing_light(tool, shot);
@@ -258,8 +273,10 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                                      input.scene().object_names,
                                      options.channels,
                                      options.exr()};
-  outputs.write(rendered, image, description, base);
+  outputs.write(rendered, image, description,
+                moment ? KeptPixels{still.anew, moment->image(), &still} : KeptPixels{base.mask, base.base});
   tool.stats().end_phase();
+  rendered.rays += still.rays;
   count_work(tool, rendered, tracer);
   report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
@@ -279,6 +296,29 @@ void warn_of_darkness(Tool& tool, const Scene& scene) {
 }
 
 }  // namespace
+
+void check_still(const RenderOptions& options) {
+  const auto both = [&](std::string IndirectLightOptions::*file) {
+    return (options.light.*file).empty() == (options.still.light.*file).empty();
+  };
+  const bool files = !options.still.light.photons.empty() || !options.still.light.irradcache.empty() ||
+                     !options.still.light.points.empty();
+  if (options.still.frame.empty()) {
+    if (files) throw InputError("--still-photons, --still-irradcache, --still-points: name the frame with --still");
+    return;
+  }
+  if (!options.base.empty() || options.frame.halves || options.half_float)
+    throw InputError("--still: with --base, --halves or --half pixels would not be those of the frame; leave out one");
+  if (options.integrator == "path" || !options.light.meshirrad.empty() || !(options.pixel_error != 0))
+    throw InputError(
+        "--still: needs --pixel-error, which decides what is sampled anew, and no --integrator path or --meshirrad");
+  for (const auto file : {&IndirectLightOptions::photons, &IndirectLightOptions::irradcache,
+                          &IndirectLightOptions::points, &IndirectLightOptions::high})
+    if (!both(file))
+      throw InputError(
+          "--still: both moments need the same kinds of light files: give each of --photons, --irradcache, --points, "
+          "--high together with the --still- option of its name");
+}
 
 void check(const Tool& tool, RenderOptions& options) {
   tool.check_frame_output(options.output);
@@ -316,6 +356,7 @@ void check(const Tool& tool, RenderOptions& options) {
   options.light.photons_alone = options.integrator == "photons";
   options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // keeps ratio()
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
+  check_still(options);
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
         "--halves: pixels of --base are the same in both, so that they are not independent; leave out one");

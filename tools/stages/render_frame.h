@@ -8,6 +8,7 @@
 #include "lib/render/frame_renderer.h"
 #include "tools/common/scene_input.h"
 #include "tools/stages/indirect_light.h"
+#include "tools/stages/still_moment.h"
 
 namespace tempolux::tools {
 
@@ -16,6 +17,7 @@ struct RenderOptions {
   std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
   IndirectLightOptions light;
+  StillOptions still;
   double pixel_error = -1;             ///< below 0: pixel_error_of_files if files hold the light, else 0
   double pixel_error_of_files = 0.01;  ///< relative error that a pixel may have
   bool half_float = false, keep_outliers = false;

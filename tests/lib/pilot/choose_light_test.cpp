@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "lib/pilot/spread_work.h"
+
 namespace tempolux {
 namespace {
 
@@ -27,7 +29,11 @@ RoughFrame example() {
   return rough;
 }
 constexpr Order kOrder{1e6, 0, false};
-constexpr double kPoints = 40'000 * Work::kPoint;
+constexpr double kPoints = 40'000 * Work::kPoint, kRecords = 10'000 * Work::kRecord;
+/// Seen errors: of samples with the allowed error, of smooth light, of records with k rays.
+constexpr double kSampled = 0.1 * Seen::kIndependent;
+double smooth(double error) { return Seen::kSmooth * error; }
+double seen_of(int rays) { return Seen::kRecords / rays; }
 
 Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
   for (const Way& one : ways)
@@ -36,20 +42,35 @@ Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
   return {};
 }
 
-/// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W in all with the points, and
-/// 10^5 per ray. With k rays the score is (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)) = 79.7; the next
-/// power of two is 64.
+/// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W = 6.26e7 in all with the
+/// points and the records' places, and 10^5 per ray. With k rays the score is (W + 1e5 k) (.104 + 2.1 / k), least at
+/// k = sqrt(2.1 W / (1e5 x .104)) = 112; the next power of two is 128.
 TEST(WaysToLight, CostAndErrAsDerived) {
   const std::vector<Way> ways = ways_to_light(example(), kOrder, false);
   ASSERT_EQ(ways.size(), 3u);
   EXPECT_NEAR(way(ways, IndirectMethod::paths).work, 1e7 * samples(2), 1);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1, 1e-12);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, kSampled, 1e-12);
   EXPECT_NEAR(way(ways, IndirectMethod::gather).work, 8e6 * samples(1.5) + kPoints, 1);
   const Way records = way(ways, IndirectMethod::records);
-  EXPECT_EQ(records.rays, 64);
-  EXPECT_NEAR(records.work, 6e6 * samples(1) + kPoints + 1e5 * records.rays, 1);
-  EXPECT_NEAR(records.error, 0.1 + 1.0 / records.rays, 1e-12);
+  EXPECT_EQ(records.rays, 128);
+  EXPECT_NEAR(records.work, 6e6 * samples(1) + kPoints + kRecords + 1e5 * records.rays, 1);
+  EXPECT_NEAR(records.error, kSampled + seen_of(records.rays), 1e-12);
   EXPECT_EQ(ways.front().method, IndirectMethod::records);
+}
+
+/// Pictures that share light pay for a part of it: a quarter of the records' work gives them twice the rays, 225, or 256
+/// on the grid. All rays together cost at most as much as one picture's samples, 6e7 / 1e5 = 600 rays, or 512.
+TEST(WaysToLight, ChargeAPictureWithItsPartOfTheLight) {
+  Order order = kOrder;
+  order.pictures = 10;
+  order.records = 0.25;
+  const std::vector<Way> ways = ways_to_light(example(), order, false);
+  EXPECT_NEAR(way(ways, IndirectMethod::gather).work, 8e6 * samples(1.5) + kPoints / 10, 1);
+  const Way records = way(ways, IndirectMethod::records);
+  EXPECT_EQ(records.rays, 256);
+  EXPECT_NEAR(records.work, 6e6 * samples(1) + kPoints / 10 + 0.25 * (kRecords + 1e5 * records.rays), 1);
+  order.records = 0.001;
+  EXPECT_EQ(way(ways_to_light(example(), order, false), IndirectMethod::records).rays, 512);
 }
 
 /// Light that lone samples bring is lacking in the other pixels: the error of .5 of the picture's light is .25. Paths
@@ -60,11 +81,11 @@ TEST(WaysToLight, LackWhatLoneSamplesBring) {
   rough.path.missed_indirect.lone = 0.3;
   rough.gather.missed_caustic.lone = 0.1;
   const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 + 0.25, 1e-12);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths, true).error, 0.1 + 0.09, 1e-12);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, kSampled + smooth(0.25), 1e-12);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths, true).error, kSampled + smooth(0.09), 1e-12);
   const Way records = way(ways, IndirectMethod::records), with_map = way(ways, IndirectMethod::records, true);
-  EXPECT_NEAR(records.error - 1.0 / records.rays, 0.1 + 0.01, 1e-12);
-  EXPECT_NEAR(with_map.error - 1.0 / with_map.rays, 0.1, 1e-12);
+  EXPECT_NEAR(records.error - seen_of(records.rays), kSampled + smooth(0.01), 1e-12);
+  EXPECT_NEAR(with_map.error - seen_of(with_map.rays), kSampled, 1e-12);
 }
 
 /// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance gives equal noise if e
@@ -78,14 +99,19 @@ TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
 }
 
-/// A filter that leaves 1/2.4 of the samples' squared error leaves that of records: they get 2.4^(1/2) times the rays:
-/// 79.7 become 123.5, and 128 instead of 64 on the grid.
+/// A filter that leaves 1/2.4 of the samples' squared error leaves that of records. What it leaves is seen 1.24 / 1.04
+/// times as much in wide boxes. So records that err twice as much get (2.4 x 1.04 / 1.24)^(1/2) times the rays: 159
+/// become 226, and 256 instead of 128 on the grid.
 TEST(WaysToLight, AFilterHelpsSamplesAlone) {
-  const std::vector<Way> ways = ways_to_light(example(), {1e6, 0}, false);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 / 2.4, 1e-12);
+  RoughFrame rough = example();
+  rough.record_error = 2;
+  EXPECT_EQ(way(ways_to_light(rough, kOrder, false), IndirectMethod::records).rays, 128);
+  const std::vector<Way> ways = ways_to_light(rough, {1e6, 0}, false);
+  const double filtered = 0.1 / 2.4 * Seen::kSamples;
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, filtered, 1e-12);
   const Way records = way(ways, IndirectMethod::records);
-  EXPECT_EQ(records.rays, 128);
-  EXPECT_NEAR(records.error, 0.1 / 2.4 + 1.0 / records.rays, 1e-12);
+  EXPECT_EQ(records.rays, 256);
+  EXPECT_NEAR(records.error, filtered + 2 * seen_of(records.rays), 1e-12);
 }
 
 /// Ways that were not measured are reported as lower bounds ("at least").
@@ -100,14 +126,15 @@ TEST(WaysToLight, SayWhatWasNotMeasured) {
 }
 
 /// No other number of rays has a score that is lower by more than the grid costs, a factor of (2 + 2^.5 + 2^-.5) / 4:
-/// sqrt(1000 (6e7 + 3.6e6) / 1e4) = 2500 rays of records that err that much, 2048 on the grid.
+/// sqrt(2100 x 6.26e7 / 1.04e4) = 3550 rays of records that err that much, 4096 on the grid.
 TEST(WaysToLight, RecordsHaveTheBestNumberOfRays) {
   RoughFrame rough = example();
   rough.record_error = 1000;
   const Way best = way(ways_to_light(rough, kOrder, false), IndirectMethod::records);
-  EXPECT_EQ(best.rays, 2048);
-  for (int rays = 64; rays <= 5000; ++rays) {
-    const Way other{IndirectMethod::records, false, rays, 6e6 * samples(1) + kPoints + 1e5 * rays, 0.1 + 1000.0 / rays};
+  EXPECT_EQ(best.rays, 4096);
+  for (int rays = 64; rays <= 9000; ++rays) {
+    const double work = 6e6 * samples(1) + kPoints + kRecords + 1e5 * rays;
+    const Way other{IndirectMethod::records, false, rays, work, kSampled + 1000 * seen_of(rays)};
     EXPECT_GE(1.0304 * other.score(), best.score()) << rays;
   }
 }
