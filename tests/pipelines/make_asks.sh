@@ -51,6 +51,28 @@ says 'another make runs here' && bad 'no other make runs, and it is blamed'
 until ! flock -n -x "$work/out/state/.makes" true; do sleep .1; done
 refuses 'another make runs here and may have removed a file' demo PIXELS='--spp nonsense' FRAMES=0
 kill $holder
+
+# Two makes begin at once in a new OUT. The plan of the first one takes a second longer, and the second one waits.
+# Seen to fail: without a lock in a new OUT the first one makes the plan of the second one.
+mkdir "$work/slow" && ln -s "$bin"/* "$work/slow" && rm "$work/slow/scene-plan" || exit 3
+cat > "$work/slow/scene-plan" << END
+"$bin/scene-plan" "\$@" && case "\$*" in *'--size 32x18'*) sleep 1;; esac
+END
+chmod +x "$work/slow/scene-plan"
+size() { make --no-print-directory -f Makefile.example BIN="$work/slow" OUT="$work/two" FRAMES=0 INDIRECT=paths \
+  PIXELS='--spp 1 --pixel-error 0' SIZE="$1" 2>&1; }
+size 32x18 > "$work/first" & first=$!
+sleep .5
+size 16x9 > "$work/said" && says 'frame of 16x9: .* look at' || bad 'two makes in a new OUT: the second one'
+wait $first && grep -q 'frame of 32x18: .* look at' "$work/first" ||
+  { cat "$work/first"; bad 'two makes in a new OUT: the first one'; }
+# What is refused leaves no OUT. An estimate by RUN reads and writes nothing in /tmp, which other machines do not see.
+refuses 'drft' demo QUALITY=drft OUT="$work/none" RUN=env
+[ ! -e "$work/none" ] || bad 'a refused make leaves OUT'
+mkdir "$work/hidden"
+echo 'case "$PWD $*" in *"$TMPDIR"/*) exit 1;; esac; exec "$@"' > "$work/run"
+TMPDIR=$work/hidden demo estimate OUT="$work/none" RUN="sh $work/run" && says 'frame-render' && [ ! -e "$work/none" ] ||
+  bad 'an estimate by RUN'
 demo report REPORT_FRAMES=30 && ls "$work"/out/error/0030-*.json > /dev/null || bad 'REPORT_FRAMES=30'
 
 # clean removes the files that make made, and nothing else.
