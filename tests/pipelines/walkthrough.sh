@@ -29,7 +29,8 @@ done
 (cd "$work/a" && "$bin/tempolux-info" --sheet marked.png --columns 8 --tile 160 \
   --exposure "$(cat shown/exposure-*)" $marked frames/*.exr &&
   cmp marked.png sheet.png && rm marked.png) || bad 'the sheet marks no keys'
-run METHOD=walkthrough OUT="$work/a"; grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
+run METHOD=walkthrough OUT="$work/a"
+grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
 
 # A key equals the rendered frame to the bit, except for the layer that only keys have.
 run METHOD=frames OUT="$work/f" CHANNELS=RGBA,Z,N,id,specular || { cat "$work/log"; exit 1; }
@@ -59,7 +60,8 @@ warps() {
 }
 [ "$(warps pipelines/scenes/S2_cornell_moving.glb)" = 0 ] || bad 'METHOD=auto warps where the camera stands'
 [ "$(warps "$work/pan.glb")" -gt 0 ] || bad 'METHOD=auto does not warp where the camera pans'
-grep -h '"traced_specular"' "$work"/a/walked/*.warp.json | grep -qv ': 0,*$' && bad 'nothing mirrors: pixels are masked for it'
+grep -h '"traced_specular"' "$work"/a/walked/*.warp.json | grep -qv ': 0,*$' &&
+  bad 'nothing mirrors: pixels are masked for it'
 
 warped=$(ls "$work"/a/walked/*.warp.json | head -n 1 | sed 's|.*/\([0-9]*\)-.*|\1|')
 [ -n "$warped" ] || bad 'no frame was warped'
@@ -71,7 +73,8 @@ digests "$work/b" | diff "$work/expected" - || bad 'one processor, one job: othe
 
 for threads in 1 2 3 7; do
   "$bin/ibr-warp" "$work/a/keys/0000-"*.exr "$work/a/keys/0004-"*.exr --scene "$work/pan.glb" --frames 1,2 \
-    --threads $threads -q -o "$work/w.##.exr" --mask "$work/m.##.exr" --flow "$work/v.##.exr" || bad "ibr-warp: $threads threads"
+    --threads $threads -q -o "$work/w.##.exr" --mask "$work/m.##.exr" --flow "$work/v.##.exr" ||
+    bad "ibr-warp: $threads threads"
   cat "$work"/[wmv].0[12].exr > "$work/all.$threads"
   cmp "$work/all.1" "$work/all.$threads" || bad "ibr-warp: other bytes by $threads threads"
 done
