@@ -8,8 +8,8 @@
 a=$1 b=$2 page=$3
 [ -d "$a/frames" ] || { echo "compare.sh: $a: has no frames; run make with OUT=$a first" >&2; exit 2; }
 [ -d "$b/frames" ] || { echo "compare.sh: $b: has no frames; OTHER=FOLDER names the OUT of another run" >&2; exit 2; }
-work=$a/.compare.tmp.$(uname -n).$$   # RUN may run a command on another machine, which sees OUT
-mkdir "$work" || exit 3
+work=$a/state/.compare.tmp.$(uname -n).$$   # RUN may run a command on another machine, which sees OUT
+mkdir -p "$work" || exit 3
 trap 'rm -rf "$work"' EXIT
 common=
 for file in "$a"/frames/*.exr; do
@@ -40,5 +40,5 @@ picture() {   # picture RUN FOLDER FRAME
   done
   sed "1,/<!-- frames -->/d" "$PIPELINES/compare.html"
 } > "$work/page.html" || exit 3
-cp "$work/page.html" "$page.$$" && mv -f "$page.$$" "$page" &&
+mv -f "$work/page.html" "$page" &&
   echo "$page: $(echo "$common" | wc -w) frames of two runs"

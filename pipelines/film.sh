@@ -4,8 +4,8 @@
 command -v ffmpeg > /dev/null ||
   { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg) and type this again' >&2; exit 2; }
 . "${0%/*}/made.sh"
-work=$PWD/.film.tmp.$(uname -n).$$   # RUN may run ffmpeg on another machine, which sees OUT
-mkdir "$work" || exit 3
+work=$PWD/state/.film.tmp.$(uname -n).$$   # RUN may run ffmpeg on another machine, which sees OUT
+mkdir -p "$work" || exit 3
 trap 'rm -rf "$work"' EXIT
 n=0
 for name in $(sed -n 's/^previews := //p' "$PLAN"); do   # in the order asked for

@@ -12,8 +12,11 @@
 . "${0%/*}/made.sh"
 
 run() {
-  field() { awk -F '\t' -v name="$1" -v n="$2" '$1 == name { print $n }' "$JOBS"; }
-  NEED="$(field "$1" 2) $(field "$1" 3)" makes=$(field "$1" 5) also=$(field "$1" 6) keyed=yes called=job
+  keyed=yes called=job
+  # Of the line of the list: what made.sh asks RUN for; files; optional files.
+  { read -r NEED; read -r makes; read -r also; } << END
+$(awk -F '\t' -v name="$1" '$1 == name { print $2, $3; print $5; print $6 }' "$JOBS")
+END
   checked=$makes
   [ "$makes" != demo ] || checked=$(sed -n 's|^sheet.png: . \([^ ]*\) .*|\1|p' "$PLAN")
   # shellcheck disable=SC2086

@@ -3,7 +3,7 @@
 #
 #     jobs.sh list         prints a line for each job that makes something that is missing:
 #                          NAME MEGABYTES SECONDS JOBS,BEFORE FILES OPTIONAL_FILES, divided by tabs
-#     jobs.sh needs        prints a line for each folder of files: FOLDER BYTES CPU_SECONDS of one command
+#     jobs.sh needs        prints a line for each folder of files: FOLDER MEGABYTES SECONDS of one command
 #     jobs.sh makefile     reads a list and prints rules of make for it
 #     jobs.sh forecast     prints how long all jobs take on NODES nodes of CORES processors, THREADS for each job
 #
@@ -12,13 +12,19 @@
 # file, and no job waits for one that waits for it. With GROUP=segment all pictures of a segment count as one. The last
 # job makes the sheet, and those previews whose exposure was not known before the frames existed.
 #
-# MEGABYTES: half as much again as the largest command needs, the accuracy of the estimate, and 64 for the shell and
-# make. SECONDS: twice the CPU seconds of the commands, as if they had one processor, and a minute to start.
-# A job that was killed or lost gets twice as much of both (made.sh). The environment has PLAN and GROUP.
+# A job that was killed or lost gets twice as many MEGABYTES and SECONDS (made.sh). The environment has PLAN and GROUP.
 : "${PLAN:=plan.mk}"
 
-# What commands have cost in this OUT, and where nothing has been measured yet, the estimate of the plan.
-needs() {
+# What a job asks a queue for. Memory: half as much again as the largest command needs, the accuracy of the estimate,
+# and 64 MB for the shell and make. Time: twice the CPU seconds, as if the job had one processor, and a minute to start.
+margins='
+  function megabytes(bytes) { return int(1.5 * bytes / 1e6 + 65) }
+  function limit(cpu_seconds) { return int(2 * cpu_seconds + 61) }'
+
+needs() { costs | awk "$margins"'{ print $1, megabytes($2), limit($3) }'; }
+
+# Prints FOLDER BYTES CPU_SECONDS: what commands have cost in this OUT, or the plan's estimate before the first has run.
+costs() {
   json=${PLAN_JSON:-plan.json}
   { sed -n 's|^ *{"file": "\([a-z_]*\)/.*"cpu_s": \([^,]*\), "memory": \([0-9]*\)}.*|plan \1 \3 \2|p' "$json" | sort -u
     sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' "$PLAN"
@@ -42,7 +48,8 @@ needs() {
 list() {
   segments=$(sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "${PLAN_JSON:-plan.json}" |
     paste -sd ' ')
-  { needs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" -v measured="$MEASURED_ONLY" '
+  { costs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" -v measured="$MEASURED_ONLY" \
+    "$margins"'
     function there(file,   line) {
       if (!(file in known)) { known[file] = (getline line < file) >= 0; close(file) }
       return known[file]
@@ -87,7 +94,6 @@ list() {
       for (i = 1; i <= files; ++i) {
         file = order[i]; key = needed_by[file]
         if (!(key in name)) {
-          split(key, of, " ")
           is_light = split(key, of, " ") > 1
           keys[++jobs] = key
           name[key] = (is_light ? "light" : group) "-" (number(file) == "" ? "0" : number(file)) "-" jobs
@@ -123,16 +129,16 @@ list() {
       for (j = 1; j <= jobs; ++j) {
         key = keys[j]
         if (!(key in computes)) continue
-        tell(name[key], most[key], seconds[key], before[name[key]], makes[key], also[key])
+        print_job(name[key], most[key], seconds[key], before[name[key]], makes[key], also[key])
         all = all " " name[key]
         if (most[key] > largest) largest = most[key]
       }
-      if (files || !there(sheet)) tell("last", largest, shown / 50, all, " demo", "")
+      if (files || !there(sheet)) print_job("last", largest, shown / 50, all, " demo", "")
     }
-    function tell(name, bytes, seconds, jobs, makes, also) {
+    function print_job(name, bytes, seconds, jobs, makes, also) {
       sub(/^ /, "", jobs); sub(/^ /, "", makes); sub(/^ /, "", also)
       if (measured) printf "%s\t%d\t%.3f\t%s\t%s\n", name, bytes / 1e6 + 1, seconds, jobs, makes
-      else printf "%s\t%d\t%d\t%s\t%s\t%s\n", name, 1.5 * bytes / 1e6 + 65, 2 * seconds + 61, jobs, makes, also
+      else printf "%s\t%d\t%d\t%s\t%s\t%s\n", name, megabytes(bytes), limit(seconds), jobs, makes, also
     }'
 }
 
@@ -140,7 +146,10 @@ list() {
 # its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
 forecast() {
   MEASURED_ONLY=yes list | awk -F '\t' -v nodes="$NODES" -v cores="$CORES" -v threads="${THREADS:-1}" '
-    { name[++jobs] = $1; number[$1] = jobs; memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3; before[jobs] = $4 }
+    {
+      name[++jobs] = $1; number[$1] = jobs; before[jobs] = $4
+      memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3
+    }
     END {
       for (j = 1; j <= jobs; ++j) {
         waits[j] = split(before[j], list, " ")
@@ -171,7 +180,8 @@ forecast() {
       printf "not less than %.1f s on any number, the longest chain of jobs: %s\n", path[end], chain
       printf "memory of a job: up to %d MB; of a node: up to %d MB\n", largest, largest * int(cores / threads)
     }
-    function longest(j,   i, n, list, earlier) {   # sets path[j]: the seconds from the start to the end of this job at best
+    # Sets path[j]: the least number of seconds from the start of all jobs to the end of this one.
+    function longest(j,   i, n, list, earlier) {
       if (j in path) return path[j]
       path[j] = 0
       n = split(before[j], list, " ")

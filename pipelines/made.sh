@@ -76,14 +76,15 @@ show() {   # show COMMAND...: prints a command that can be typed
 }
 
 # What the command for a file needs, in words of RUN: sets `memory`, such as 380M, and `time`, such as 0:01:01. $NEED
-# has megabytes and seconds of a job, $NEEDS is a file with bytes and CPU seconds by folder (jobs.sh needs). A file of
-# no stage, such as a preview, gets as much as the largest; before there is a plan, 1 GB and half an hour.
-need_of() {   # need_of FILE TIMES: so many times twice as much
+# has the megabytes and seconds of a job. $NEEDS is a file with the megabytes and seconds of one command by folder
+# (jobs.sh needs). A file of no stage, such as a preview, gets as much as the largest command. Before there is a plan,
+# a command gets 1 GB and half an hour.
+need_of() {   # need_of FILE TIMES: twice as much, so many times
   need=${NEED:-$( { cat "$NEEDS" || echo; } 2> /dev/null | awk -v folder="${1%%/*}" '
-    $1 == folder { found = 1; memory = $2; cpu = $3; exit }
+    $1 == folder { memory = $2; time = $3; exit }
     $2 > memory { memory = $2 }
-    $3 > cpu { cpu = $3 }
-    END { if (memory) printf "%d %d", 1.5 * memory / 1e6 + 65, 2 * cpu + 61; else print "1024 1800" }')}
+    $3 > time { time = $3 }
+    END { print memory ? memory " " time : "1024 1800" }')}
   memory=$((${need% *} << $2))M time=$((${need#* } << $2))
   time=$(printf '%d:%02d:%02d' $((time / 3600)) $((time % 3600 / 60)) $((time % 60)))
 }
@@ -179,8 +180,7 @@ answer() {
 
 # finished FILE: with RUN, words about the command that has made it.
 finished() {
-  [ -z "$RUN" ] || [ -n "$V" ] || [ -z "$PROGRESS" ] || [ "$1" = report/index.html ] ||
-    sh "$PIPELINES/progress.sh" say "$1"
+  [ -z "$RUN" ] || [ -n "$V" ] || [ -z "$PROGRESS" ] || sh "$PIPELINES/progress.sh" say "$1"
 }
 
 case ${0##*/} in made.sh) made "$@" && finished "$1";; esac

@@ -67,14 +67,26 @@ set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes
   --recipes "$TOP/pipelines/show.sh"
 
 . "${0%/*}/made.sh"
-plan=plan.mk folder=$OUT
-if [ "$goal" = estimate ] && [ -n "$RUN" ]; then   # other machines see OUT, and not /tmp
-  mkdir -p "$OUT/state" && aside=$OUT/state/.estimate.tmp.$(uname -n).$$ && mkdir "$aside" || exit 3
-  trap 'rm -rf "$aside"; rmdir "$OUT/state" "$OUT" 2> /dev/null' EXIT
-else
-  aside=$(mktemp -d) || exit 3
-  trap 'rm -rf "$aside"' EXIT
-fi
+plan=plan.mk folder=$OUT copies='' planning='' fresh=''
+ours=tmp.$(uname -n).$$   # ends the names of the files and folders of this make
+[ -d "$OUT" ] || fresh=yes
+# Makes a folder that all machines see, if RUN is set: other machines see OUT, and not /tmp.
+shared_aside() {
+  [ -n "$RUN" ] && { [ -z "$dry" ] || [ "$goal" = estimate ]; } && mkdir -p "$OUT/state" || return
+  aside=$OUT/state/.make.$ours
+  mkdir "$aside"
+}
+shared_aside 2> /dev/null || aside=$(mktemp -d) || exit 3
+# Removes the files of this make. Removes an OUT that this make has made, too, if OUT holds no plan and no other file.
+clean_up() {
+  rm -rf "$aside"
+  [ -z "$copies" ] || rm -f "$OUT/$plan" "$OUT/$PLAN_JSON"
+  [ -z "$fresh" ] || [ -e "$OUT/plan.mk" ] || {
+    [ -z "$planning" ] || rm -f "$OUT/state/.planning"
+    rmdir "$OUT/state" "$OUT" 2> /dev/null
+  }
+}
+trap clean_up EXIT
 export FAILED="$aside/failed" CLAIMS="$aside/claims"
 mkdir "$CLAIMS" || exit 3
 makes() {   # runs in a subshell; after an error all that does not need the lost file is made (-k)
@@ -110,16 +122,19 @@ if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which
   plan=$aside/plan.mk
   [ -d "$OUT" ] || folder=$aside
 else
+  # Makes in one OUT plan one after the other. Each one holds the lock until it has a copy of its plan. A make without a
+  # plan may have removed OUT and the lock: then the lock is taken again.
+  for try in 1 2 3; do
+    mkdir -p "$OUT/state" 2> /dev/null
+    command -v flock > /dev/null && [ -w "$OUT/state" ] || break
+    { command exec 7> "$OUT/state/.planning"; } 2> /dev/null && ending flock 7 || continue
+    [ "$OUT/state/.planning" -ef /proc/self/fd/7 ] && planning=yes && break
+  done
   # scene-plan rewrites only what has changed. Statistics are new after each run: they show that RUN has run it.
   ran=
-  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null && [ -w "$OUT/state" ]; then
+  if [ -n "$RUN" ] && [ -w "$OUT/state" ]; then
     ran=$OUT/state/planned.json
     set -- "$@" --stats "$ran"
-  fi
-  # A second make in OUT waits with its plan until this one has a copy.
-  if command -v flock > /dev/null && [ -w "$OUT/state" ]; then
-    exec 7> "$OUT/state/.planning"
-    flock 7
   fi
   wanted=plan.mk
   # shellcheck disable=SC2086
@@ -128,14 +143,18 @@ else
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
   # A finished OUT may lie on a disk that is read only.
   if [ -w "$OUT/state" ]; then
-    plan=state/.plan.mk.tmp.$(uname -n).$$
-    trap 'rm -rf "$aside" "$OUT/$plan" "$OUT/$PLAN_JSON"' EXIT
-    export PLAN="$plan" PLAN_JSON="state/.plan.json.tmp.$(uname -n).$$"
-    # Copies of makes that were killed.
-    (set +f; for left in "$OUT"/state/.plan.*.tmp."$(uname -n)".*; do [ -d "/proc/${left##*.}" ] || rm -f "$left"; done)
+    plan=state/.plan.mk.$ours copies=yes
+    export PLAN="$plan" PLAN_JSON="state/.plan.json.$ours"
+    # What makes have left that were killed.
+    (set +f
+      for left in "$OUT"/state/.*."${ours%.*}".*; do
+        process=${left##*."${ours%.*}".}
+        [ -d "/proc/${process%%.*}" ] || rm -rf "$left"
+      done)
     cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
-    exec 7>&-
   fi
+  exec 7>&-
+  planning=
 fi
 [ "$goal" = plan ] && exit
 case $goal in frames/*)

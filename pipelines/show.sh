@@ -8,8 +8,9 @@
 #                                           the picture; all frames share it, so that the brightness does not jump
 #     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border
 #     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
+#     shown/report-KEY OPTION...            report/index.html; the options are those of error-report
 #
-# The environment has BIN, RUN, PIPELINES and PLAN.
+# The environment has BIN, RUN, SCENE, PIPELINES and PLAN.
 . "${0%/*}/made.sh"
 marker=$1; shift
 what=${marker#shown/}
@@ -68,6 +69,10 @@ case $marker in
     part_of $file
     sh "$PIPELINES/walkthrough.sh" log "$@" > "$part" || exit
     publish shown/walk-*;;
+  shown/report-*)
+    made report/index.html -- $RUN "$BIN/error-report" -o report --title "$(basename -- "$SCENE"): error against time" \
+      "$@" || exit
+    publish shown/report-*;;
   *.png)
     file=frames/$what.png
     shows "$(cat "$2")" "$1"

@@ -2,7 +2,7 @@
 # slurm.sh -- submits the jobs of a plan (jobs.sh) to Slurm and watches them: `make slurm` (docs/farm.md).
 #
 #     slurm.sh submit        run inside OUT by run.sh: ends when all jobs have ended; with 2 if files are missing then
-#     slurm.sh task ARRAY    on a node: runs the job in line $SLURM_ARRAY_TASK_ID of ARRAY
+#     slurm.sh task ARRAY    on a node: runs the job in line $SLURM_ARRAY_TASK_ID of the file ARRAY
 #
 # Jobs that wait for the same jobs are one array. Slurm itself runs on if the machine of make dies: the list of what was
 # submitted is in state/slurm-KEY, and the same command finds it there, waits for the jobs that are still in the queue
@@ -22,76 +22,106 @@ patiently() {
 }
 
 tasks_alive() {   # prints the tasks of this plan that are in the queue: TASK STATE REASON
-  ids=$(sed 's/_.*//' "$work/tasks" 2> /dev/null | sort -un | paste -sd,)
-  [ -n "$ids" ] || return 0
+  [ -s "$work/tasks" ] || return 0
   patiently squeue -h -r -u "$(id -un)" -o '%i %t %r' > "$work/queue" || exit 3
-  awk -v ids="$ids" '
-    BEGIN { n = split(ids, list, ","); for (i = 1; i <= n; ++i) ours[list[i]] }
-    { id = $1; sub(/_.*/, "", id); if (id in ours) print }' "$work/queue"
+  awk '
+    { array = $1; sub(/_.*/, "", array) }
+    FILENAME ~ /tasks$/ { ours[array]; next }
+    array in ours' "$work/tasks" "$work/queue"
 }
 
-# The next array: jobs without a task whose predecessors all have one. Prints its names, after a line with the
-# predecessors' tasks, megabytes and seconds.
-next_array() {
-  awk -F '\t' -v given="$work/given" '
-    BEGIN { while ((getline line < given) > 0) { split(line, of, " "); task[of[1]] = of[2] } }
-    { name[++jobs] = $1; megabytes[$1] = $2; seconds[$1] = $3; before[$1] = $4; listed[$1] }
-    END {
-      for (j = 1; j <= jobs; ++j) {
-        if (name[j] in task) continue
-        ready = 1; tasks = ""
-        n = split(before[name[j]], list, " ")
-        for (i = 1; i <= n; ++i) {
-          if (!(list[i] in task)) { ready = 0; break }
-          one = task[list[i]]
-          if (n > 20) sub(/_.*/, "", one)   # whole arrays: a short list
-          if (index(tasks ":", ":" one ":") == 0) tasks = tasks ":" one
-        }
-        if (!ready || (chosen && before[name[j]] != waits_for)) continue
-        if (!chosen) { waits_for = before[name[j]]; after = tasks }
-        if (++chosen > 1000) break   # of Slurm: MaxArraySize is 1001
-        if (megabytes[name[j]] > memory) memory = megabytes[name[j]]
-        if (seconds[name[j]] > time) time = seconds[name[j]]
-        names = names name[j] "\n"
-      }
-      if (chosen) printf "%s %d %d\n%s", after ? after : "-", memory, time, names
-    }' "$JOBS"
-}
-
-# Submits what is missing and is not in the queue.
-submit() {
-  JOBS=$work/jobs.$round.$$
-  sh "$PIPELINES/jobs.sh" list > "$JOBS"
-  # A job whose files a task in the queue makes has that task.
-  tasks_alive > "$work/alive.all" || return
-  cut -d' ' -f1 "$work/alive.all" > "$work/alive"
-  awk -F '\t' -v alive="$work/alive" -v tasks="$work/tasks" '
+# Divides into arrays the jobs of the list that no task in the queue makes. Jobs of an array wait for the same jobs, and
+# each of these has a task or is in an earlier array. For each array: writes a file NAMES.N with a line NAME, tab, FILES
+# for each job, and prints a line: N JOBS MEGABYTES SECONDS AFTER. AFTER holds a shell variable in the place of each
+# number that Slurm has not given yet: ":12_3:${array_1}_7:${array_2}". Writes to the file `given` the name and the task
+# of each job that has a task.
+arrays() {   # arrays NAMES
+  awk -F '\t' -v names="$1" -v alive="$work/alive" -v tasks="$work/tasks" -v given="$work/given" '
     BEGIN {
-      while ((getline one < alive) > 0) lives[one]
+      while ((getline line < alive) > 0) { split(line, word, " "); lives[word[1]] }
       while ((getline line < tasks) > 0) {
         n = split(line, word, " ")
         if (word[1] in lives) for (i = 2; i <= n; ++i) makes[word[i]] = word[1]
       }
+      printf "" > given
     }
-    { split($5, file, " "); if (file[1] in makes) print $1, makes[file[1]] }' "$JOBS" > "$work/given"
-  array=0
-  while next_array > "$work/next" && [ -s "$work/next" ]; do
-    array=$((array + 1))
-    names=$work/array.$round.$$.$array
-    sed 1d "$work/next" > "$names"
-    read -r after memory time < "$work/next"
-    [ "$after" = - ] && after= || after=--dependency=afterok$after
+    {
+      split($5, file, " ")
+      if (file[1] in makes) { task[$1] = makes[file[1]]; print $1, task[$1] > given; next }
+      name[++jobs] = $1; megabytes[jobs] = $2; seconds[jobs] = $3; before[jobs] = $4; files[jobs] = $5
+    }
+    # The tasks of the jobs that job j waits for; "": one of them has no task yet.
+    function tasks_before(j,   i, n, list, one, all) {
+      n = split(before[j], list, " ")
+      all = ":"
+      for (i = 1; i <= n; ++i) {
+        if (!(list[i] in task)) return ""
+        one = task[list[i]]
+        if (n > 20) sub(/_[0-9]*$/, "", one)   # whole arrays: a short list
+        if (index(all, ":" one ":") == 0) all = all one ":"
+      }
+      return all
+    }
+    # The next array begins with the first job that can be in one.
+    function next_array(   j, first, after, many, memory, time, member) {
+      for (j = 1; j <= jobs && many < 1000; ++j) {   # MaxArraySize of Slurm is 1001
+        if (name[j] in task || (first && before[j] != before[first])) continue
+        if (!first) { if ((after = tasks_before(j)) == "") continue; first = j; ++array }
+        member[++many] = j
+        if (megabytes[j] > memory) memory = megabytes[j]
+        if (seconds[j] > time) time = seconds[j]
+        print name[j] "\t" files[j] > (names "." array)
+      }
+      for (j = 1; j <= many; ++j) task[name[member[j]]] = "${array_" array "}_" j
+      if (many) { close(names "." array); sub(/:$/, "", after); print array, many, memory, time, after }
+      return many
+    }
+    END { while (next_array()) ; }' "$JOBS"
+}
+
+# Submits what is missing and is not in the queue.
+submit() {
+  JOBS=$work/jobs.$round.$$ names=$work/array.$round.$$
+  sh "$PIPELINES/jobs.sh" list > "$JOBS"
+  tasks_alive > "$work/alive" || return
+  arrays "$names" > "$work/arrays" || return
+  while read -r number jobs memory time after; do
+    eval "after=$after"   # numbers of arrays that were submitted
     time=$(((time << round) / 60 + 1))
     patiently squeue -h -t S > "$work/queue" || return   # the controller answers
-    id=$(JOBS=$JOBS sbatch --parsable -J "tempolux-$(head -n 1 "$names")" -a "1-$(wc -l < "$names")" $after \
+    read -r name _ < "$names.$number"
+    id=$(JOBS=$JOBS sbatch --parsable -J "tempolux-$name" -a "1-$jobs" ${after:+"--dependency=afterok$after"} \
       --kill-on-invalid-dep=yes --requeue -n1 -c"${THREADS:-1}" --mem="$((memory << round))" --time="$time" \
-      --open-mode=append -o "$work/said.%A_%a" --wrap "exec sh \"\$PIPELINES/slurm.sh\" task $names") || return
+      --open-mode=append -o "$work/said.%A_%a" --wrap "exec sh \"\$PIPELINES/slurm.sh\" task $names.$number" \
+      < /dev/null) || return
     id=${id%%;*}
-    awk -F '\t' -v names="$names" -v id="$id" '
-      BEGIN { while ((getline name < names) > 0) task[name] = id "_" ++n }
-      $1 in task { print task[$1], $5 }' "$JOBS" >> "$work/tasks"
-    awk -v id="$id" '{ print $1, id "_" NR }' "$names" >> "$work/given"
-  done
+    eval "array_$number=$id"
+    awk -F '\t' -v id="$id" -v given="$work/given" '
+      { print id "_" NR, $2; print $1, id "_" NR >> given }' "$names.$number" >> "$work/tasks"
+  done < "$work/arrays"
+}
+
+# Prints "ended NAME" for each job that is not in the queue any more, whose files are there, and that PROGRESS does not
+# name yet. Prints "why N jobs wait: REASON" if jobs wait and none runs.
+look() {
+  awk -v alive="$work/alive" -v tasks="$work/tasks" -v progress="$PROGRESS" -v sheet="$1" '
+    function there(file,   line, found) { found = (getline line < file) >= 0; close(file); return found }
+    BEGIN {
+      while ((getline < alive) > 0) {
+        lives[$1]
+        if ($2 == "R" || $2 == "CG") runs = 1
+        if ($2 == "PD" && $3 !~ /None|Dependency/) { waiting++; sub(/^[^ ]* [^ ]* */, ""); why = $0 }
+      }
+      while ((getline name < progress) > 0) said[name]
+      while ((getline < tasks) > 0) { task = $1; sub(/^[^ ]* */, ""); files[task] = $0 }
+      if (waiting && !runs) print "why " waiting " jobs wait: " why
+    }
+    $2 in lives || $1 in said { next }
+    {
+      n = split(files[$2], list, " ")
+      for (i = 1; i <= n; ++i) if (!there(list[i] == "demo" ? sheet : list[i])) next
+      print "ended " $1
+    }' "$work/given"
 }
 
 # Prints a line for each job whose files are there, and why jobs wait.
@@ -99,19 +129,12 @@ watch() {
   told='' sheet=$(sed -n 's|^sheet.png: . \([^ ]*\) .*|\1|p' "$PLAN")
   while :; do
     tasks_alive > "$work/alive" || exit 3
-    while read -r name task; do
-      [ -n "$task" ] && ! grep -q "^$task " "$work/alive" && ! grep -qx "$name" "$PROGRESS" || continue
-      made=yes
-      for file in $(awk -v task="$task" '$1 == task { $1 = ""; print }' "$work/tasks"); do
-        [ "$file" != demo ] || file=$sheet
-        [ -e "$file" ] || made=
-      done
-      [ -z "$made" ] || sh "$PIPELINES/progress.sh" job "$name"
-    done < "$work/given"
+    look "$sheet" > "$work/seen"
+    why=
+    while read -r what words; do
+      case $what in ended) sh "$PIPELINES/progress.sh" job "$words";; why) why=$words;; esac
+    done < "$work/seen"
     [ -s "$work/alive" ] || return 0
-    why=$(awk '$2 == "R" || $2 == "CG" { runs = 1 }
-      $2 == "PD" && $3 !~ /None|Dependency/ { n++; $1 = $2 = ""; why = $0 }
-      END { if (n && !runs) { sub(/^ */, "", why); print n " jobs wait: " why } }' "$work/alive")
     [ -z "$why" ] || [ "$why" = "$told" ] || echo "$why"
     told=$why
     ending sleep 1
@@ -148,8 +171,9 @@ submit_all() {
       exit 2
     fi
     round=$((round + 1))
-    cut -f 5 "$work/missing" | sed 's/ .*//; /^demo$/d' |
-      sed "s/\$/: not made; its job is submitted again ($round of ${RETRIES:-2})/" >&2
+    awk -v round="$round of ${RETRIES:-2}" '
+      { split($0, field, "\t"); split(field[5], file, " ") }
+      file[1] != "demo" { print file[1] ": not made; its job is submitted again (" round ")" }' "$work/missing" >&2
     rm -f "$work"/failed.*
   done
   rm -rf "$work"
@@ -162,6 +186,6 @@ case $1 in
     export FAILED="${2%/*}/failed.${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
     unset MAKEFLAGS MFLAGS MAKELEVEL
     [ -z "$THREADS" ] && TEMPOLUX_THREADS=$SLURM_CPUS_PER_TASK && export TEMPOLUX_THREADS
-    exec sh "$PIPELINES/job.sh" run "$(sed -n "${SLURM_ARRAY_TASK_ID}p" "$2")";;
+    exec sh "$PIPELINES/job.sh" run "$(sed -n "${SLURM_ARRAY_TASK_ID}p" "$2" | cut -f 1)";;
   *) echo "slurm.sh: '$1' is none of submit, task" >&2; exit 2;;
 esac

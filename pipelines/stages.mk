@@ -67,12 +67,10 @@ $(frames) $(previews) sheet.png walk.log:
 	@test -f $@ || $(show)
 
 # The page of the report: errors against path tracing, and the cost of all stages.
-title = "$$(basename -- "$$SCENE"): error against time"
-write_report = sh "$$PIPELINES/made.sh" report/index.html -- $(RUN) "$$BIN"/error-report -o report --title $(title) \
-  $(report_runs) && rm -f shown/report-* && touch $(marker)
+show_report = @test -f $@ || exec sh "$$PIPELINES/show.sh" $(marker) $(report_runs)
 shown/report-%:
-	@$(write_report)
+	$(show_report)
 report/index.html:
-	@test -f $@ || { $(write_report); }
+	$(show_report)
 report: report/index.html
 	@cat report/report.md

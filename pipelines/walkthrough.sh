@@ -20,22 +20,15 @@ frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.e
 number() { n=${1#"${1%%[!0]*}"}; echo "${n:-0}"; }      # 0012 -> 12
 count_of() { sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),*\$/\1/p" "$2" | head -n 1; }
 percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
-# makes FILE... -- TOOL OPTION...: runs a tool on the scene. A message names the target. SHARED: options in quotes,
-# names in variables.
+# makes FILE... -- TOOL OPTION...: runs a tool on the scene with the camera of the frames. A message names the target.
+# SHARED: options in quotes, names in variables.
 makes() {
   files=
   while [ "$1" != -- ]; do files="$files $1"; shift; done
   name=$2; shift 2
   eval "set -- \"\$@\" $SHARED"
   # shellcheck disable=SC2086
-  made $files -- $RUN "$BIN/$name" "$@"
-}
-warp() {   # warp FILE... -- OPTION...
-  files=
-  while [ "$1" != -- ]; do files="$files $1"; shift; done
-  shift
-  # shellcheck disable=SC2086
-  makes $files -- ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"}
+  made $files -- $RUN "$BIN/$name" "$@" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"}
 }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
@@ -43,8 +36,8 @@ sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$n
 # Warps both keys to frame $1 in folder $2. Exits with 1 if a viewer sees the error of either warped picture in more
 # than the share $threshold of the pixels that are not masked. Appends the share in percent to $seen.
 differ() {
-  warp "$2/w_1.exr" "$2/w_2.exr" "$2/why.exr" "$2/flow.exr" "$2/$1.warp.json" -- \
-    "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
+  makes "$2/w_1.exr" "$2/w_2.exr" "$2/why.exr" "$2/flow.exr" "$2/$1.warp.json" -- ibr-warp "$a" "$b" --scene "$SCENE" \
+    --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
     --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
   answer=0 may_differ=yes
@@ -117,10 +110,10 @@ frame() {
   [ "$channels" = - ] || { completed=${target%.exr}.raw.exr; set -- "$@" --compression none; }
   if [ ! -f "$completed" ]; then
     instead=$target
-    warp "$part.warp.exr" "$part.mask.exr" -- "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" \
-      --compression none --stats "${target%.exr}.warp.json"
-    makes "$completed" -- frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"} --base "$part.warp.exr" \
-      --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
+    makes "$part.warp.exr" "$part.mask.exr" -- ibr-warp "$x" "$y" --scene "$SCENE" --frame "$n" -o "$part.warp.exr" \
+      --mask "$part.mask.exr" --compression none --stats "${target%.exr}.warp.json"
+    makes "$completed" -- frame-render "$SCENE" --frame "$n" "$@" --base "$part.warp.exr" --mask "$part.mask.exr" \
+      -o "$completed" --stats "${target%.exr}.json"
     instead=
   fi
   [ "$channels" != - ] || return 0

@@ -21,14 +21,19 @@ made() {   # made FILE
 }
 echo text > '{mem} b'
 export RUN='sh queue.sh --mem={mem},--time={time},-c{threads}'
-# A stage: 100 MB and 3601.5 CPU seconds: 1.5 x 100 + 65 MB, 2 x 3601.5 + 61 s; then twice as much.
+# A stage, in a plan: 100 MB and 3601.5 CPU seconds: 1.5 x 100 + 65 MB, 2 x 3601.5 + 61 s; then twice as much.
 mkdir raw
-printf 'cache 900000000 9\nraw 100000000 3601.5\n' > needs
+printf '  {"file": "%s", "cpu_s": %s, "memory": %s},\n' cache/0-1.irradcache 9 900000000 raw/0-1.exr 3601.5 100000000 \
+  > plan.json
+: > plan.mk
+sh "$PIPELINES/jobs.sh" needs > needs
 export NEEDS="$work/needs"
 made 'raw/{mem}'
 is "$(paste -sd' ' said)" '--mem=215M,--time=2:01:04,-c3 --mem=430M,--time=4:02:08,-c3' 'a stage'
-is "$(cat errors)" 'raw/{mem}: not made: sh ended with 0, but raw/{mem} is not there; RUN has lost the command; it is run again (1 of 2)' 'a line'
-# A file of no stage gets as much as the largest of each; a job what its list says; before a plan, 1 GB and half an hour.
+lost='raw/{mem}: not made: sh ended with 0, but raw/{mem} is not there; RUN has lost the command'
+is "$(cat errors)" "$lost; it is run again (1 of 2)" 'a line'
+# A file of no stage gets as much as the largest of each; a job what its list says; before a plan, 1 GB and half an
+# hour.
 made preview
 is "$(head -1 said)" '--mem=1415M,--time=2:01:04,-c3' 'a preview'
 NEED='558 65' made job
