@@ -32,6 +32,9 @@ double error_for_samples(double times);
 /// both.
 class PixelNoise {
  public:
+  /// Reach, in pixels, of the 80 pixels of wanted_at(): as far as a pixel's samples are noticed.
+  static constexpr int kWide = 4;
+
   /// Both arguments must outlive this object.
   PixelNoise(const CameraView& view, const FrameOptions& options);
 
@@ -64,9 +67,9 @@ class PixelNoise {
   };
   /// Approximate number of lattice pixels: their mean has an error of 1 % if single pixels differ by 60 %.
   static constexpr double kOnLattice = 4096;
-  /// Reach, in pixels, of the 80 pixels of wanted_at(), and of the 8 pixels of own_variance(). The latter are few
-  /// because edges are narrow, and all pixels near an edge that they contain get further samples.
-  static constexpr int kWide = 4, kNearSharp = 1;
+  /// Reach, in pixels, of the 8 pixels of own_variance(). They are few because edges are narrow, and all pixels near an
+  /// edge that they contain get further samples.
+  static constexpr int kNearSharp = 1;
   struct Around;
 
   double own_variance(int x, int y) const;

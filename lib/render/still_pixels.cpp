@@ -8,6 +8,7 @@
 
 #include "lib/core/parallel_each.h"
 #include "lib/render/pixel_noise.h"
+#include "lib/render/pixels_around.h"
 
 namespace tempolux {
 namespace {
@@ -23,20 +24,18 @@ PathParts difference(const PathParts& now, const PathParts& before) {
   return result;
 }
 
-/// Sum of the absolute values of all layers, mean of the channels.
-double size_of(const PathParts& parts) {
-  double sum = 0;
-  for (const Layers* layers : {&parts.own, &parts.lit, &parts.onward})
-    for (const Rgb& radiance : layers->value)
-      sum += (std::abs(double(radiance.r)) + std::abs(double(radiance.g)) + std::abs(double(radiance.b))) / 3;
-  return sum;
+/// Adds `light` times `factor`.
+void add(const Layers& light, float factor, Layers& to) {
+  for (std::size_t l = 0; l < kLayerCount; ++l) to.value[l] += light.value[l] * factor;
+  to.coverage += light.coverage * factor;
+  to.mirrored += light.mirrored * factor;
 }
 
 /// First samples of a pixel at both moments.
 struct FirstSamples {
-  PixelSum half[2];    ///< of the differences
-  double now = 0;      ///< sum of the radiance now
-  double largest = 0;  ///< size of the largest difference
+  PixelSum half[2];            ///< of the differences
+  double now = 0;              ///< sum of the radiance now
+  std::vector<Layers> change;  ///< each sample's part of the mean difference; their sum is the mean
   std::uint64_t onward = 0;
 };
 
@@ -52,15 +51,94 @@ FirstSamples first_samples(const CameraSampler& now, const CameraSampler& before
     const PathParts& other = samples[std::size_t(i)];
     const PathParts changed = difference(other, sample);
     first.half[pass.half(i)].add(changed);
-    first.now += radiance_of(other.own) + radiance_of(other.lit) + radiance_of(other.onward);
-    first.largest = std::max(first.largest, size_of(changed));
+    first.now += radiance_of(other.sum());
+    Layers& change = first.change.emplace_back();
+    add(changed.own, 1 / float(pass.count.own), change);
+    add(changed.lit, 1 / float(pass.count.lit), change);
+    add(changed.onward, 1 / float(pass.count.onward), change);
   });
   return first;
+}
+
+/// What a lone sample adds to a pixel's mean difference beyond the mean part of the other samples.
+struct Lone {
+  Layers excess;
+  double size = 0;  ///< |radiance| of the excess
+};
+
+Lone lone_of(const std::vector<Layers>& change) {
+  Layers sum;
+  for (const Layers& one : change) add(one, 1, sum);
+  Lone lone;
+  for (const Layers& one : change) {
+    Layers excess = one;
+    if (change.size() > 1)
+      add(one, 1 / float(change.size() - 1), excess), add(sum, -1 / float(change.size() - 1), excess);
+    if (const double size = std::abs(radiance_of(excess)); size > lone.size) lone = {excess, size};
+  }
+  return lone;
 }
 
 bool more(const PartCounts& wanted, const PartCounts& first) {
   return wanted.own > first.own || wanted.lit > first.lit || wanted.onward > first.onward;
 }
+
+/// A comparison of two moments.
+class Comparison {
+ public:
+  Comparison(const CameraSampler& now, const CameraSampler& before, const FrameOptions& options, StillPixels& still)
+      : width_(now.view.width()), height_(now.view.height()), noise_(now.view, options), still_(still) {
+    still.anew.assign(std::size_t(width_) * std::size_t(height_), 1);
+    still.change.resize(still.anew.size());
+    lone_.resize(still.anew.size());
+    std::vector<double> level(still.anew.size());
+    const PartCounts first = noise_.first();
+    for_each_pixel(now.view, {}, still.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+      const FirstSamples samples = first_samples(now, before, {pixel, x, y, {}, first}, counts);
+      level[pixel] = samples.now / first.own;
+      noise_.note(pixel, samples.half[0], samples.half[1], samples.onward);
+      noise_.set_level(pixel, level[pixel]);
+      for (const Layers& one : samples.change) add(one, 1, still_.change[pixel]);
+      lone_[pixel] = lone_of(samples.change);
+    });
+    noise_.all_noted();
+    parallel_each(still.anew.size(), 1024, [&](std::size_t pixel) {
+      still_.anew[pixel] = more(noise_.wanted_at(x_of(pixel), y_of(pixel), 1), first);
+    });
+    for (std::size_t pixel = 0; pixel < level.size(); ++pixel) error_.push_back(noise_.error_at(level[pixel]));
+  }
+
+  /// Spreads the excess of lone samples.
+  void treat_lone_samples() {
+    for (std::size_t pixel = 0; pixel < lone_.size(); ++pixel)
+      if (!still_.anew[pixel] && lone_[pixel].size > error_[pixel]) spread_from(pixel);
+  }
+
+ private:
+  int x_of(std::size_t pixel) const { return int(pixel % std::size_t(width_)); }
+  int y_of(std::size_t pixel) const { return int(pixel / std::size_t(width_)); }
+
+  /// Spreads the excess of a pixel evenly over it and the kept pixels around, so widely that none gets more than it may
+  /// err, and at most as far as its samples are noticed.
+  void spread_from(std::size_t pixel) {
+    const Lone& lone = lone_[pixel];
+    std::vector<std::size_t> to;
+    for (int reach = 1; reach <= PixelNoise::kWide && lone.size > error_[pixel] * double(to.size()); ++reach) {
+      to.assign(1, pixel);
+      for_each_around(width_, height_, x_of(pixel), y_of(pixel), reach, [&](std::size_t near, int, int) {
+        if (!still_.anew[near]) to.push_back(near);
+      });
+    }
+    add(lone.excess, -1, still_.change[pixel]);
+    for (const std::size_t near : to) add(lone.excess, 1 / float(to.size()), still_.change[near]);
+  }
+
+  int width_, height_;
+  PixelNoise noise_;
+  StillPixels& still_;
+  std::vector<Lone> lone_;
+  std::vector<double> error_;  ///< that a pixel may have
+};
 
 }  // namespace
 
@@ -69,30 +147,8 @@ double StillPixels::share_anew() const {
 }
 
 StillPixels still_pixels(const CameraSampler& now, const CameraSampler& before, const FrameOptions& options) {
-  PixelNoise noise(now.view, options);
-  const PartCounts first = noise.first();
-  const std::size_t pixels = std::size_t(now.view.width()) * std::size_t(now.view.height());
-  StillPixels still{std::vector<std::uint8_t>(pixels, 1), std::vector<Layers>(pixels), {}};
-  std::vector<float> level(pixels), largest(pixels);
-  for_each_pixel(now.view, {}, still.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const FirstSamples samples = first_samples(now, before, {pixel, x, y, {}, first}, counts);
-    noise.note(pixel, samples.half[0], samples.half[1], samples.onward);
-    level[pixel] = float(samples.now / first.own);
-    noise.set_level(pixel, double(level[pixel]));
-    largest[pixel] = float(samples.largest);
-    const PixelSum sum = samples.half[0] + samples.half[1];
-    PathParts mean;
-    join(sum.own, 0, first.own, mean.own);
-    join(sum.lit, 0, first.lit, mean.lit);
-    join(sum.onward, 0, first.onward, mean.onward);
-    still.change[pixel] = mean.sum();
-  });
-  noise.all_noted();
-  parallel_each(pixels, 1024, [&](std::size_t pixel) {
-    const int x = int(pixel % std::size_t(now.view.width())), y = int(pixel / std::size_t(now.view.width()));
-    const bool lone = double(largest[pixel]) > first.own * noise.error_at(double(level[pixel]));
-    still.anew[pixel] = lone || more(noise.wanted_at(x, y, 1), first);
-  });
+  StillPixels still;
+  Comparison(now, before, options, still).treat_lone_samples();
   return still;
 }
 

@@ -22,9 +22,9 @@ struct StillPixels {
 /// nothing that a sample meets has changed, both samples are equal, and their difference has no noise. So
 ///     radiance now = radiance before + mean of the differences
 /// has no bias, and little noise where little changes. A pixel is sampled anew if its differences would need further
-/// samples for the frame's pixel error: by the noise of its neighbours' differences (PixelNoise), or because a single
-/// sample of it differs by more than all samples together may err. The first rule adds no bias. By the second, light
-/// that single samples find counts less, as with spread_outliers.
+/// samples for the frame's pixel error, by the noise of its neighbours' differences (PixelNoise): this adds no bias.
+/// If the difference of one sample alone moves a kept pixel by more than it may err, the excess is spread evenly over
+/// the kept pixels around, so the sum over pixels stays the same.
 /// Both samplers have the same view, seed and guide to the sky; `options`: those of the frame. Same result for any
 /// number of threads.
 StillPixels still_pixels(const CameraSampler& now, const CameraSampler& before, const FrameOptions& options);

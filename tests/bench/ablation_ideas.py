@@ -62,5 +62,5 @@ IDEAS = (
          (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
            "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),
     Idea("rays of records by a pilot", "scene-plan finds how many rays records need", "cache",
-         (("lib/pilot/choose_light.cpp", "way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));", "way.rays = 500;"),)),
+         (("lib/pilot/choose_light.cpp", "way.rays = rays_of_records(rough, order, of_pixels, way);", "way.rays = 500;"),)),
 )
