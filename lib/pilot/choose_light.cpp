@@ -83,23 +83,23 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths)
-    fixed += double(order.photons) * Work::kLightRay * (1 + rough.photons_per_path);
+    fixed += double(order.photons) * Work::kRay * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{.method = method, .map = map, .photons = order.photons};
   const double of_pixels = order.pixels * sample * samples;
   way.work = fixed / order.pictures + of_pixels;
   const double of_samples = order.filtered ? wanted / kFilterGain : wanted;
-  way.error = of_samples * (order.filtered ? Seen::kSamples : Seen::kIndependent);
+  way.error = of_samples * (order.filtered ? Seen::kSamples : Seen::independent());
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
-  if (map) way.error += Seen::kSmooth * map_error(rough);
+  if (map) way.error += Seen::smooth() * map_error(rough);
   // A map holds caustic light, records indirect light; samples find the other layers.
   const MissedLight caustic = map ? MissedLight{} : effort.missed_caustic,
                     indirect = records ? MissedLight{} : effort.missed_indirect;
-  way.error += Seen::kSmooth * (caustic.left(samples) + indirect.left(samples));
+  way.error += Seen::smooth() * (caustic.left(samples) + indirect.left(samples));
   way.never = caustic.never;
   way.uncertain = indirect.uncertain;
   const double lone = caustic.lone + indirect.lone;
-  way.error += Seen::kSmooth * lone * lone;
+  way.error += Seen::smooth() * lone * lone;
   if (records) {
     way.work += order.records * rough.records * Work::kRecord;
     way.rays = rays_of_records(rough, order, of_pixels, way);

@@ -22,8 +22,8 @@ namespace {
 constexpr int kNeighbours = 200;
 
 /// Costs of a state of light over its cost without reuse (docs/methods/dynamic.md). Photons and points: a constant
-/// part, and a part that grows with the share of touched paths. Records: a constant part.
-constexpr double kLeastLight = 0.2, kLightByTouched = 3, kLeastRecords = 0.1;
+/// part, and a part that grows with the share of touched paths.
+constexpr double kLeastLight = 0.2, kLightByTouched = 3;
 
 float largest(Rgb flux) { return std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}); }
 

@@ -9,6 +9,9 @@
 
 namespace tempolux {
 
+/// Least cost of the records of a state of light over their cost without reuse (docs/methods/dynamic.md).
+inline constexpr double kLeastRecords = 0.1;
+
 /// What a frame reuses. anew: nothing. light: photons and points of the static scene. records: its photons, points and
 /// records. time: its photons and points, and the records of the frame before.
 enum class MovingMethod : std::uint8_t { anew, light, records, time };

@@ -86,7 +86,7 @@ Samples samples_of(const RenderScene& scene, const CameraView& view, const Known
 /// Work of one sample, in shadow rays.
 double work_of(const RayCounts& counts, const Samples& samples) {
   return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) +
-          Work::kPointRead * double(counts.points_read)) /
+          Work::kRay * double(counts.points_read)) /
          (kSamples * double(samples.size()));
 }
 
@@ -324,8 +324,7 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
   }
   if (gathered > 0)
     rough.record_ray =
-        (Work::kGatherRay * double(all.rays) + double(all.shadow_rays) + Work::kRay * double(all.distance_rays)) /
-        (gathered * kRays);
+        (double(all.rays) + double(all.shadow_rays) + Work::kRay * double(all.distance_rays)) / (gathered * kRays);
 }
 
 /// Adds light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found.
@@ -387,7 +386,7 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.gather.without_caustic = rough.path.other_without_caustic;
   rough.gather.missed_caustic.lone = 0;
   rough.gather.missed_indirect = {};
-  rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
+  rough.record_sample = rough.gather.work + 1 * seen;
 }
 
 /// Sets the values of `rough` that concern gathering.
@@ -403,9 +402,9 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
   // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
   // needs this ray, which ends at its first hit.
   const double onward_shadow = double(counts.onward) - 2 * double(counts.onward_bounce),
-               onward = Work::kRay * double(counts.onward_bounce) + onward_shadow +
-                        Work::kPointRead * double(counts.points_read);
-  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - onward;
+               onward =
+                   Work::kRay * double(counts.onward_bounce) + onward_shadow + Work::kRay * double(counts.points_read);
+  const double at_records = (Work::kRay + 1) * double(counts.gathered) - onward;
   rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }
 

@@ -18,16 +18,16 @@
 namespace tempolux {
 
 /// CPU times over that of a shadow ray with its light sample and shading, which takes .4 to 1.3 us by scene. Work is
-/// counted in this unit, so that decisions do not depend on the speed or the load of a machine. The times are those of
-/// 18 scenes (docs/methods/ways.md, tests/bench/ways.py).
+/// counted in this unit, so that decisions do not depend on the speed or the load of a machine. The look-up of a
+/// record, and a ray of a record with the look-up at its end, take one unit. The times are those of 18 scenes
+/// (docs/methods/ways.md, tests/bench/ways.py).
 struct Work {
-  static constexpr double kRay = 0.6;        ///< a nearest hit of a camera path, with surface and material
-  static constexpr double kPointRead = 0.5;  ///< the look-up of a point at the end of a ray
-  static constexpr double kRecordLookUp = 1, kCausticLookUp = 2;
-  static constexpr double kLightRay = 0.5;  ///< a ray of a light path, with the photon that it leaves
-  static constexpr double kPoint = 27;      ///< an irradiance point: density estimates and light samples
-  static constexpr double kGatherRay = 1;   ///< a ray of a record, with the look-up at its end
-  static constexpr double kRecord = 150;    ///< a record without its rays: its place, and a look around
+  /// A nearest hit with surface and material, of a camera path or of a light path with the photon that it leaves; also
+  /// the look-up of a point.
+  static constexpr double kRay = 0.6;
+  static constexpr double kCausticLookUp = 2;
+  static constexpr double kPoint = 27;    ///< an irradiance point: density estimates and light samples
+  static constexpr double kRecord = 150;  ///< a record without its rays: its place, and a look around
   /// A photon of a map that a picture reads: its index, and slower look-ups of points and pixels. In furnished_day 1.7
   /// million further photons cost each picture 4 CPU s.
   static constexpr double kPhotonRead = 2;

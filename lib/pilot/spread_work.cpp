@@ -10,8 +10,6 @@ namespace tempolux {
 namespace {
 
 constexpr double kPhotonsOfAPlace = PhotonLightOptions{}.caustic_neighbours;
-/// Sides of the boxes, in pixels, over which an error is seen: those of tests/bench/steady.py.
-constexpr double kSeenBoxes[] = {1, 5, 15};
 /// Number of pixels over which the filter averages inside surfaces: it leaves .03 to .09 of the samples' squared error
 /// there (docs/notebook/st-filter.md).
 constexpr double kFilterPixels = 16;
@@ -44,7 +42,7 @@ class Spread {
   }
 
  private:
-  double path() const { return Work::kLightRay * (1 + rough_.photons_per_path); }
+  double path() const { return Work::kRay * (1 + rough_.photons_per_path); }
   double further(std::uint64_t photons) const { return double(photons) - double(asked_.photons); }
 
   const RoughFrame& rough_;

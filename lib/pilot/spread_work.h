@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 
 #include "lib/pilot/rough_frame.h"
 
@@ -15,11 +16,17 @@ namespace tempolux {
 /// of the box, and the filter averages g = 16 pixels. Without light the error is 0.
 double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t photons);
 
-/// Squared errors of boxes of 1, 5 and 15 pixels together over that of single pixels (docs/methods/ways.md): of
-/// filtered samples and of records, measured; of independent samples, 1 + 1/25 + 1/225; of what differs little over 15
-/// pixels.
+/// Sides of the boxes, in pixels, over which an error is seen: those of tests/bench/steady.py.
+inline constexpr double kSeenBoxes[] = {1, 5, 15};
+/// Squared errors of these boxes together over that of single pixels (docs/methods/ways.md).
 struct Seen {
-  static constexpr double kSamples = 1.24, kRecords = 2.1, kIndependent = 1.04, kSmooth = 3;
+  static constexpr double kSamples = 1.24, kRecords = 2.1;  ///< of filtered samples and of records, measured
+  static double independent() {                             ///< of independent samples: 1 + 1/25 + 1/225
+    double sum = 0;
+    for (const double box : kSeenBoxes) sum += 1 / (box * box);
+    return sum;
+  }
+  static double smooth() { return double(std::size(kSeenBoxes)); }  ///< of what differs little over 15 pixels
 };
 
 /// A filtered picture with a map of caustic photons, with the samples that the wish's pixel error asks for.

@@ -35,9 +35,6 @@ constexpr std::size_t kFewestStates = 3;
 /// A segment departs from the shot's way to light if the shot's way needs more than this many times the work of the
 /// segment's best way; departs() allows for the pilots' error besides.
 constexpr double kDeparture = 1.3;
-/// Share of its records that a state of light gathers beside those of the static scene, before pilots know where movers
-/// matter: .34 in furnished_day, .15 in evening_shot, as CPU time.
-constexpr double kMovedRecords = 0.3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
@@ -433,14 +430,15 @@ double pictures_of_a_map(const PlannedSegment& segment, const Wish& wish, bool m
   return std::max(1.0, may_share_static(segment, wish, media) ? pictures / 2 : pictures / states);
 }
 
-/// If the light of the static scene is shared, each state gathers further records where movers matter.
+/// If the light of the static scene is shared, each state gathers further records where movers matter: at least
+/// kLeastRecords, and about as many again as its part of the static ones.
 Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, const FramePilot& pilot) {
   Sharing sharing{.pictures = pictures_of_a_map(segment, wish, media)};
   if (segment.views().size() < 2) return sharing;
   sharing.new_share = pilot.new_share(segment);
   const double part = part_of_records(segment, sharing.new_share);
   if (segment.states().size() == 1) sharing.records = part;
-  else if (may_share_static(segment, wish, media)) sharing.records = std::min(1.0, part + kMovedRecords);
+  else if (may_share_static(segment, wish, media)) sharing.records = std::min(1.0, 2 * part + kLeastRecords);
   return sharing;
 }
 

@@ -31,8 +31,8 @@ RoughFrame example() {
 constexpr Order kOrder{1e6, 0, false};
 constexpr double kPoints = 40'000 * Work::kPoint, kRecords = 10'000 * Work::kRecord;
 /// Seen errors: of samples with the allowed error, of smooth light, of records with k rays.
-constexpr double kSampled = 0.1 * Seen::kIndependent;
-double smooth(double error) { return Seen::kSmooth * error; }
+const double kSampled = 0.1 * Seen::independent();
+double smooth(double error) { return Seen::smooth() * error; }
 double seen_of(int rays) { return Seen::kRecords / rays; }
 
 Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
@@ -58,8 +58,8 @@ TEST(WaysToLight, CostAndErrAsDerived) {
   EXPECT_EQ(ways.front().method, IndirectMethod::records);
 }
 
-/// Pictures that share light pay for a part of it: a quarter of the records' work gives them twice the rays, 225, or 256
-/// on the grid. All rays together cost at most as much as one picture's samples, 6e7 / 1e5 = 600 rays, or 512.
+/// Pictures that share light pay for a part of it: a quarter of the records' work gives them twice the rays, 225, or
+/// 256 on the grid. All rays together cost at most as much as one picture's samples, 6e7 / 1e5 = 600 rays, or 512.
 TEST(WaysToLight, ChargeAPictureWithItsPartOfTheLight) {
   Order order = kOrder;
   order.pictures = 10;

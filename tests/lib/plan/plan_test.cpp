@@ -390,6 +390,31 @@ TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
   for (const int key : {0, 2, 3, 4, 8}) EXPECT_TRUE(graph.pictures.at(key).starts_with("keys/")) << key;
 }
 
+/// A box moves through frames 0 to 8 while the camera stands until frame 6: frame 4 gives the pixels that stay, with its
+/// own light, to the frames until 6. Frame 7 is sampled as a whole. Frame 4 needs no other frame. The segments of frame
+/// 4 and of frame 0 differ.
+TEST(Graph, StillFramesTakePixelsFromTheMiddleWhileTheCameraStands) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7, 8});
+  slide(scene, kCamera, {0, 0, 0, 0, 0, 0, 0, 1, 2});
+  Wish wish;
+  wish.method = FrameMethod::still;
+  wish.filter = 1;
+  TimeOptions time;
+  time.segment_length = 4;
+  const Plan plan = make_plan(scene, std::vector{0, 4, 7}, kCamera, time, {}, {}, true);
+  ASSERT_EQ(plan.middle(), 4);
+  const Graph graph = graph_of(plan, records(), wish);
+  ASSERT_EQ(names(graph, "still/").size(), 1u);
+  const std::string words = file_of(graph, "raw/0000").words;
+  for (const char* part : {" --still still/0004-", " --still-frame 4", " --still-irradcache cache/0004-",
+                           " --still-points points/0004-"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << " in " << words;
+  EXPECT_EQ(file_of(graph, "raw/0007").words.find("--still"), std::string::npos);
+  EXPECT_NE(file_of(graph, "filtered/0004").words.find("still/0004-"), std::string::npos);
+  EXPECT_TRUE(names(graph_of(plan, records()), "still/").empty()) << "METHOD=frames";
+}
+
 /// An interval is halved by what a viewer sees where pictures of its quality have more errors than allowed.
 TEST(Graph, AnIntervalMayShowWhatItsQualityShows) {
   for (const auto& [quality, own, words] :
