@@ -283,6 +283,24 @@ std::optional<BrightPoints::LampSpot> BrightPoints::lamp_spot(const SurfacePoint
   return spot;
 }
 
+float reach_of_spots(const Lights& lights, std::span<const IrradianceRecord> records) {
+  if (!lights.has_placed()) return 0;
+  constexpr std::size_t kLooks = 1024;
+  const std::size_t step = std::max<std::size_t>(1, records.size() / kLooks);
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < records.size(); i += step) {
+    const PathRandom random(0x7265616368ull, i);
+    LightSample light;
+    if (lights.sample(records[i].position, records[i].normal, random.get2(0, Purpose::light_point), light,
+                      Lights::From::not_suns) &&
+        !light.distant)
+      distances.push_back(length(light.position - records[i].position));
+  }
+  if (distances.empty()) return 0;
+  std::ranges::nth_element(distances, distances.begin() + std::ptrdiff_t(distances.size() / 2));
+  return distances[distances.size() / 2] / kExplicitFrom;
+}
+
 void add_bright_light(const BrightLight& light, IrradianceRecord& record) {
   record.irradiance = Rgb(Rgbd(record.irradiance) + light.irradiance);
   for (std::size_t c = 0; c < 3; ++c) {

@@ -157,6 +157,10 @@ class BrightPoints {
   std::optional<LightTree> tree_, point_tree_;  ///< over all spots, and over those of points
 };
 
+/// Distance [m] up to which a lamp beside a surface makes a spot for most of the records: the median distance of a
+/// lamp, drawn as light samples are, over the 4 of the division (BrightPoints). 0 if no record has a lamp.
+float reach_of_spots(const Lights& lights, std::span<const IrradianceRecord> records);
+
 /// Adds the light and its gradients to a record of gather rays.
 void add_bright_light(const BrightLight& light, IrradianceRecord& record);
 

@@ -41,9 +41,10 @@ class KnownLight {
   /// The bright points among `points`. Places without a record sample bright points explicitly, and gather rays from
   /// there contribute the remaining light.
   const BrightPoints* bright = nullptr;
-  /// Light of lamps close to surfaces that `records` leave out (GatherOptions::lamps_apart). Places that read records
-  /// sample this light explicitly, as often as they sample lamps. null: records hold all light.
+  /// Light of lamps close to surfaces, which places sample explicitly, as often as they sample lamps: what `records`
+  /// leave out (GatherOptions::lamps_apart), and what the lobes S of the place or of the spot reflect. May be null.
   const BrightPoints* lamp_spots = nullptr;
+  float lamps_apart = 0;  ///< m: records leave out light of lamps up to this distance from a spot; 0: they hold all
   int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
   /// Is there an environment or an emitting surface, which a ray can meet? If not, and if indirect and caustic light
   /// are known at a place, no ray is sent from the Lambert lobe, because it would find nothing.

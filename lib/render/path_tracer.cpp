@@ -321,7 +321,8 @@ void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
   if (!known_ || !known_->lamp_spots) return;
   at.spots = at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps);
   const bool gloss = !scene_.stored && !state.inside.any();
-  at.spots_of_gloss = gloss && at.spots && !at.known.has(LightKind::caustic);
+  at.spots_of_gloss = gloss && at.known.has(LightKind::indirect) && !at.known.has(LightKind::direct) &&
+                      !at.known.has(LightKind::caustic);
   at.spots_in_gloss = gloss && state.path.sharp() && samples_specular(at, state);
 }
 
@@ -339,10 +340,10 @@ void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, cons
     return known_->lamp_spots->has_lamp_light(nullptr, spot->distance * width, spot->lamp_distance);
   };
   Rgb indirect(0.0f), caustic(0.0f), of_matte(0.0f), of_gloss(0.0f);
-  if (at.spots) {
+  if (at.spots || at.spots_of_gloss) {
     const float arrival = x.bsdf.has_specular() ? x.bsdf.arrival_weight(spot->wi, stored.shading) : 1;
     const Rgb reflected = x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share * cosine * arrival);
-    if (divided(1)) indirect = reflected * spot->matte;
+    if (at.spots && spot->lamp_distance < known_->lamps_apart && divided(1)) indirect = reflected * spot->matte;
     if (at.spots_of_gloss && divided(spot->gloss_width)) caustic = reflected * spot->glossy;
   }
   if (at.spots_in_gloss && x.sees(spot->wi)) {
@@ -374,7 +375,7 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
     else
       for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
   };
-  if (at.spots || at.spots_in_gloss)
+  if (at.spots || at.spots_of_gloss || at.spots_in_gloss)
     each([&](const PixelRandom& random, Layers& result) { sample_lamp_spots(at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;
   if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
@@ -490,7 +491,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
           known.indirect(*stored_at.surface, stored_at.geometric, stored_at.shading, &noise)) {
     ++counts_.lookups;
     at.known.add(LightKind::indirect);
-    if (!known.lamp_spots) at.known.add(LightKind::lamps);
+    if (!(known.lamps_apart > 0)) at.known.add(LightKind::lamps);
     result[layer] += reflected * *indirect;
     if (layer == Layer::indirect) parts_.stored_noise.indirect += reflected * noise;
   } else {

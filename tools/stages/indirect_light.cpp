@@ -4,6 +4,7 @@
 
 #include "lib/points/lamp_light.h"
 #include "lib/gather/localised_file.h"
+#include "lib/material/surface_material.h"
 #include "lib/points/whole_photons.h"
 #include "lib/scene/static_scene.h"
 
@@ -115,10 +116,18 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const Render
   records_ = std::make_unique<RecordStore>(float(file.header.least_cosine));
   history_ = add_records(tool, name, file, frame, *records_);
   known_.records = records_.get();
-  if (!(file.header.lamps_apart > 0)) return;
-  no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(),
-                                             float(file.header.lamps_apart / double(kBesideLamp)));
+  known_.lamps_apart = float(file.header.lamps_apart);
+  float reach = known_.lamps_apart;
+  if (lobes_of(frame).specular) reach = std::max(reach, reach_of_spots(scene.lights, records_->records()));
+  if (!(reach > 0)) return;
+  no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(), reach / kBesideLamp);
   const std::vector<LampPhoton> photons = photons_beside_lamps(scene.tracer, scene.lights, *no_points_);
+  if (photons.empty() && !(known_.lamps_apart > 0)) return;
+  // Glossy rays must not read light of spots from points.
+  if (lookup_)
+    for (const LampPhoton& photon : photons)
+      if (const PointLookup::Light* const light = lookup_->find(photon.place.position, photon.normal))
+        lookup_->note_lamp(light->point);
   lamp_spots_ = std::make_unique<BrightPoints>(scene.tracer, scene.lights, *no_points_, std::vector<float>(),
                                                BrightOptions{.beside_lamps = photons});
   known_.lamp_spots = lamp_spots_.get();
