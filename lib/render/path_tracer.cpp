@@ -134,7 +134,8 @@ class EyeTracer {
   Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
   void sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
                     Layers& result) const;
-  void sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random, Layers& result) const;
+  void sample_spots(const BrightPoints& spots, const Vertex& at, const PathState& state, const PixelRandom& random,
+                    Layers& result) const;
   void add_light(const Vertex& at, const PathState& state) const;
   void add_met(Rgb light, const PathState& state) const;
   void arrive(const SurfacePoint& point, PathState& state) const;
@@ -143,7 +144,7 @@ class EyeTracer {
   bool step(PathState& state) const;
   void choose_spots(Vertex& at, const PathState& state) const;
   bool was_sampled(float divided_leg, Vec3 lamp, Vec3 position) const {
-    return divided_leg > 0 && known_->lamp_spots->has_lamp_light(nullptr, divided_leg, length(lamp - position));
+    return divided_leg > 0 && known_->samples_spot(divided_leg, length(lamp - position));
   }
   void go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const;
   /// Adds `rays` to the counter `as`. If the path belongs to the part onward, also adds the rays' cost to
@@ -318,7 +319,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
 /// Decides for which lobes of a surface light of lamps close to other surfaces is sampled. At another moment of the
 /// shutter spots lie elsewhere than those of the known light, and gloss samples none.
 void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
-  if (!known_ || !known_->lamp_spots) return;
+  if (!known_ || (!known_->lamp_spots && !known_->gloss_spots)) return;
   at.spots = at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps);
   const bool gloss = !scene_.stored && !state.inside.any();
   at.spots_of_gloss = gloss && at.known.has(LightKind::indirect) && !at.known.has(LightKind::direct) &&
@@ -326,24 +327,24 @@ void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
   at.spots_in_gloss = gloss && state.path.sharp() && samples_specular(at, state);
 }
 
-/// Takes one sample of the light of lamps close to other surfaces (KnownLight::lamp_spots): what records leave out, and
-/// what gloss here or there reflects.
-void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random,
-                                  Layers& result) const {
+/// Takes one sample of the light of lamps close to other surfaces: what records leave out, if these are
+/// KnownLight::lamp_spots, and what gloss here or there reflects.
+void EyeTracer::sample_spots(const BrightPoints& spots, const Vertex& at, const PathState& state,
+                             const PixelRandom& random, Layers& result) const {
   const ShadingPoint& x = at.x;
   const StoredAt stored(scene_, x);
-  const std::optional<BrightPoints::LampSpot> spot = known_->lamp_spots->lamp_spot(
-      *stored.surface, stored.shading, random.get1(state.bounce, Purpose::light_choice));
+  const std::optional<BrightPoints::LampSpot> spot =
+      spots.lamp_spot(*stored.surface, stored.shading, random.get1(state.bounce, Purpose::light_choice));
   if (!spot) return;
   const float cosine = dot(spot->wi, stored.shading);
   const auto divided = [&](float width) {
-    return known_->lamp_spots->has_lamp_light(nullptr, spot->distance * width, spot->lamp_distance);
+    return known_->samples_spot(spot->distance * width, spot->lamp_distance);
   };
   Rgb indirect(0.0f), caustic(0.0f), of_matte(0.0f), of_gloss(0.0f);
   if (at.spots || at.spots_of_gloss) {
     const float arrival = x.bsdf.has_specular() ? x.bsdf.arrival_weight(spot->wi, stored.shading) : 1;
     const Rgb reflected = x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share * cosine * arrival);
-    if (at.spots && spot->lamp_distance < known_->lamps_apart && divided(1)) indirect = reflected * spot->matte;
+    if (at.spots && &spots == known_->lamp_spots && divided(1)) indirect = reflected * spot->matte;
     if (at.spots_of_gloss && divided(spot->gloss_width)) caustic = reflected * spot->glossy;
   }
   if (at.spots_in_gloss && x.sees(spot->wi)) {
@@ -375,8 +376,10 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
     else
       for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
   };
-  if (at.spots || at.spots_of_gloss || at.spots_in_gloss)
-    each([&](const PixelRandom& random, Layers& result) { sample_lamp_spots(at, state, random, result); });
+  const bool gloss = at.spots_of_gloss || at.spots_in_gloss;
+  for (const BrightPoints* const spots : {known_ ? known_->lamp_spots : nullptr, known_ ? known_->gloss_spots : nullptr})
+    if (spots && (gloss || (at.spots && spots == known_->lamp_spots)))
+      each([&](const PixelRandom& random, Layers& result) { sample_spots(*spots, at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;
   if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
   each([&](const PixelRandom& random, Layers& result) { sample_light(at, state, random, false, result); });
@@ -491,7 +494,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
           known.indirect(*stored_at.surface, stored_at.geometric, stored_at.shading, &noise)) {
     ++counts_.lookups;
     at.known.add(LightKind::indirect);
-    if (!(known.lamps_apart > 0)) at.known.add(LightKind::lamps);
+    if (!known.lamp_spots) at.known.add(LightKind::lamps);
     result[layer] += reflected * *indirect;
     if (layer == Layer::indirect) parts_.stored_noise.indirect += reflected * noise;
   } else {

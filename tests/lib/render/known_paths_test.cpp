@@ -241,7 +241,6 @@ TEST(LampSpots, ShadeIndirectLightBetweenRecords) {
   KnownLight known;
   known.records = &store;
   known.lamp_spots = &spots;
-  known.lamps_apart = kBesideLamp * test::Ceiling::kSpacing;
   known.lights_are_met = false;
   const auto irradiance = [&](float x) {
     RayCounts rays;
