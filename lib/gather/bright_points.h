@@ -110,7 +110,7 @@ class BrightPoints {
 
   /// A sample of the light of lamps close to surfaces that arrives at a place, before any division.
   struct LampSpot {
-    Vec3 wi{};                             ///< unit, from the place to the spot
+    Vec3 wi{};                              ///< unit, from the place to the spot
     float distance = 0, lamp_distance = 0;  ///< m: l, and d of the lamp
     /// Irradiance [W/m^2] of a surface that faces the spot, over the density of the sample: light from the spot's
     /// Lambert lobe, and from its lobes S but mirrors.

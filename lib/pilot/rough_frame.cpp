@@ -158,8 +158,9 @@ double adaptive(const std::vector<double>& variances) {
 }
 
 /// Variance of one sample by part of the picture, as variances() has it, of light that paths find as lone samples
-/// (lone_light): E x^2 of samples that are cut at the value c is c times their mean. Few of the pilot's samples meet such
-/// light, so their own variance says little. Empty if paths find no caustic light, or if all lights have an extent.
+/// (lone_light): E x^2 of samples that are cut at the value c is c times their mean. Few of the pilot's samples meet
+/// such light, so their own variance says little. Empty if paths find no caustic light, or if all lights have an
+/// extent.
 std::vector<double> lone_variances(const RenderScene& scene, const Lights& aimed, const CameraView& view,
                                    const RoughOptions& options, const SeenPhotons& caustics, const Levels& levels,
                                    double times) {
@@ -193,15 +194,14 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
     }
     return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
-  return {.work = work,
-          .all = with_lone([](const Sample& s) { return s.sum(); },
-                           [](const Sample& s) { return s.other + s.indirect; }),
-          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
-          .other = with_lone([](const Sample& s) { return s.other + s.caustic; },
-                             [](const Sample& s) { return s.other; }),
-          .other_without_caustic = of([](const Sample& s) { return s.other; }),
-          .missed_caustic = {.lone = lost(&Sample::caustic)},
-          .missed_indirect = {.lone = lost(&Sample::indirect)}};
+  return {
+      .work = work,
+      .all = with_lone([](const Sample& s) { return s.sum(); }, [](const Sample& s) { return s.other + s.indirect; }),
+      .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
+      .other = with_lone([](const Sample& s) { return s.other + s.caustic; }, [](const Sample& s) { return s.other; }),
+      .other_without_caustic = of([](const Sample& s) { return s.other; }),
+      .missed_caustic = {.lone = lost(&Sample::caustic)},
+      .missed_indirect = {.lone = lost(&Sample::indirect)}};
 }
 
 /// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they

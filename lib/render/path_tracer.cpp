@@ -337,9 +337,7 @@ void EyeTracer::sample_spots(const BrightPoints& spots, const Vertex& at, const 
       spots.lamp_spot(*stored.surface, stored.shading, random.get1(state.bounce, Purpose::light_choice));
   if (!spot) return;
   const float cosine = dot(spot->wi, stored.shading);
-  const auto divided = [&](float width) {
-    return known_->samples_spot(spot->distance * width, spot->lamp_distance);
-  };
+  const auto divided = [&](float width) { return known_->samples_spot(spot->distance * width, spot->lamp_distance); };
   Rgb indirect(0.0f), caustic(0.0f), of_matte(0.0f), of_gloss(0.0f);
   if (at.spots || at.spots_of_gloss) {
     const float arrival = x.bsdf.has_specular() ? x.bsdf.arrival_weight(spot->wi, stored.shading) : 1;
@@ -377,7 +375,8 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
       for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
   };
   const bool gloss = at.spots_of_gloss || at.spots_in_gloss;
-  for (const BrightPoints* const spots : {known_ ? known_->lamp_spots : nullptr, known_ ? known_->gloss_spots : nullptr})
+  for (const BrightPoints* const spots :
+       {known_ ? known_->lamp_spots : nullptr, known_ ? known_->gloss_spots : nullptr})
     if (spots && (gloss || (at.spots && spots == known_->lamp_spots)))
       each([&](const PixelRandom& random, Layers& result) { sample_spots(*spots, at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;

@@ -80,9 +80,9 @@ void blur(std::vector<double>& image, int width, int height, int r) {
 
 /// Moves outliers that can be spread with box radius r from `waiting` to `spread`, in their order. An outlier of light
 /// L spreads over the 3 x 3 cells of r x r pixels around it. Let S be the sum of the allowed errors e in these cells, U
-/// the light that they have received before, and n their number of pixels, 9 r^2 inside the picture. Three boxes of b = 2 r + 1 pixels
-/// leave the share m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3). If 1 / m^2 is less than 9 r^2, n, S
-/// and U are reduced by the factor between them. The outlier is spread if
+/// the light that they have received before, and n their number of pixels, 9 r^2 inside the picture. Three boxes of b =
+/// 2 r + 1 pixels leave the share m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3). If 1 / m^2 is less
+/// than 9 r^2, n, S and U are reduced by the factor between them. The outlier is spread if
 ///     L <= S: its light per pixel is below the allowed error; and
 ///     n L / S (2 U / S + L / S) <= seen2: the squared error that it adds over e^2, n ((U + L)^2 - U^2) / S^2, is at
 ///     most its visible squared error as a single bright pixel.

@@ -10,8 +10,8 @@
 namespace tempolux {
 
 /// f_S [1/sr] of light from wi towards the eye (local frame), with the light that the lobes send to wi's image
-/// (ShadingFrame): times wi's cosine to the shading normal it is the radiance per irradiance. wi is on the eye's side by
-/// both normals.
+/// (ShadingFrame): times wi's cosine to the shading normal it is the radiance per irradiance. wi is on the eye's side
+/// by both normals.
 inline Rgb eval_specular(const Bsdf& bsdf, const ShadingFrame& frame, const Bsdf::Direction& wi,
                          const Bsdf::Direction& eye) {
   const Rgb f = bsdf.eval_specular(wi, eye);

@@ -126,8 +126,9 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const Render
     for (const LampPhoton& photon : photons)
       if (const PointLookup::Light* const light = lookup_->find(photon.place.position, photon.normal))
         lookup_->note_lamp(light->point);
-  const auto first_far = std::ranges::stable_partition(
-      photons, [apart](const LampPhoton& photon) { return photon.lamp_distance < apart; }).begin();
+  const auto first_far = std::ranges::stable_partition(photons, [apart](const LampPhoton& photon) {
+                           return photon.lamp_distance < apart;
+                         }).begin();
   const auto spots = [&](auto first, auto last) {
     return std::make_unique<BrightPoints>(scene.tracer, scene.lights, *no_points_, std::vector<float>(),
                                           BrightOptions{.beside_lamps = {first, last}});
