@@ -13,6 +13,7 @@
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 #include "lib/transport/media.h"
+#include "lib/transport/shading.h"
 
 namespace tempolux {
 namespace {
@@ -108,7 +109,8 @@ void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
       spot = std::uint32_t(high_.size()) +
              cells.emplace(points_.ask(photon.place.position, photon.normal).cell, std::uint32_t(cells.size()))
                  .first->second;
-    sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance});
+    sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance,
+                      photon.arriving, photon.wi});
   }
 }
 
@@ -247,6 +249,55 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     }
   }
   return light;
+}
+
+std::optional<BrightPoints::LampSpot> BrightPoints::lamp_spot(const SurfacePoint& place, Vec3 normal,
+                                                              float choice) const {
+  if (sites_of_.empty()) return std::nullopt;
+  LightTree::Choice chosen;
+  if (!tree_->choose(tree_->start(place.position, normal), place.position, normal, choice, chosen)) return std::nullopt;
+  const Sites& sites = sites_of_[chosen.light];
+  const Site& site = sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];
+  const Vec3d d(site.place.position - place.position);
+  const double distance = length(d), there = -dot(Vec3d(site.normal), d);
+  const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
+  if (!(site.lamp_distance > 0 && there > 0 && dot(wi, normal) > 0 &&
+        dot(wi, face_forward(place.normal_geometric, normal)) > 0))
+    return std::nullopt;
+  const auto scale = float(there / (distance * distance * distance) * double(sites.count) / chosen.probability);
+  LampSpot spot;
+  spot.wi = wi;
+  spot.distance = float(distance);
+  spot.lamp_distance = site.lamp_distance;
+  spot.matte = radiance(site, -wi) * scale;
+  if (site.bsdf.has_specular() && !site.bsdf.specular_is_delta()) {
+    const SeenSide side(site.place, -wi);
+    const Bsdf::Direction from = site.bsdf.along(side.frame.to_local(site.wi)), to = site.bsdf.along(side.wo_local);
+    if (side.sees(site.wi)) {
+      spot.glossy = eval_specular(site.bsdf, side.frame, from, to) * site.arriving * scale;
+      spot.gloss_width = width_of(gloss_density(site.bsdf, side.frame, from.w, to));
+    }
+  }
+  spot.shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
+  return spot;
+}
+
+float reach_of_spots(const Lights& lights, std::span<const IrradianceRecord> records) {
+  if (!lights.has_placed()) return 0;
+  // Of n records n^(2/3) are looked at: they suffice for a median, and the work stays small.
+  const std::size_t step = std::size_t(std::cbrt(double(records.size()))) + 1;
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < records.size(); i += step) {
+    const PathRandom random(0x7265616368ull, i);
+    LightSample light;
+    if (lights.sample(records[i].position, records[i].normal, random.get2(0, Purpose::light_point), light,
+                      Lights::From::not_suns) &&
+        !light.distant)
+      distances.push_back(length(light.position - records[i].position));
+  }
+  if (distances.empty()) return 0;
+  std::ranges::nth_element(distances, distances.begin() + std::ptrdiff_t(distances.size() / 2));
+  return distances[distances.size() / 2] / kExplicitFrom;
 }
 
 void add_bright_light(const BrightLight& light, IrradianceRecord& record) {

@@ -84,8 +84,10 @@ class BrightPoints {
   /// points at a spot meet the spot often, so explicit samples begin at a distance that is larger by the factor 1 /
   /// width.
   static float lobe_width(const Bsdf& bsdf, Vec3 wi, const Bsdf::Direction& wo) {
-    return std::min(1.0f, 1 / std::sqrt(kPi * bsdf.gloss_density(wi, wo)));
+    return width_of(bsdf.gloss_density(wi, wo));
   }
+  /// The same from p.
+  static float width_of(float pdf_solid_angle) { return std::min(1.0f, 1 / std::sqrt(kPi * pdf_solid_angle)); }
 
   /// A place that receives light of bright points.
   struct Receiver {
@@ -106,6 +108,20 @@ class BrightPoints {
   /// to `counts`.
   BrightLight arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const;
 
+  /// A sample of the light of lamps close to surfaces that arrives at a place, before any division.
+  struct LampSpot {
+    Vec3 wi{};                              ///< unit, from the place to the spot
+    float distance = 0, lamp_distance = 0;  ///< m: l, and d of the lamp
+    /// Irradiance [W/m^2] of a surface that faces the spot, over the density of the sample: light from the spot's
+    /// Lambert lobe, and from its lobes S but mirrors.
+    Rgb matte{0.0f}, glossy{0.0f};
+    float gloss_width = 0;  ///< lobe_width() of the lobes S
+    Ray shadow;             ///< shadow ray: transmittance() along it is the share of the light that arrives
+  };
+  /// Draws a spot for a place by `choice` in [0, 1). normal: unit, on the lit side. Empty if no light can arrive; the
+  /// sample then counts as 0.
+  std::optional<LampSpot> lamp_spot(const SurfacePoint& place, Vec3 normal, float choice) const;
+
  private:
   struct Site {
     SurfacePoint place;
@@ -116,6 +132,8 @@ class BrightPoints {
     float area;               ///< m^2; 1 for a photon, whose `irradiance` is its flux [W]
     std::uint32_t spot;       ///< index of its point; above the points: number of a cell of photons without a point
     float lamp_distance = 0;  ///< m: distance of the photon's lamp; 0: the site belongs to a point with a high part
+    Rgb arriving{0.0f};       ///< W: LampPhoton::arriving
+    Vec3 wi{};                ///< LampPhoton::wi
   };
   struct Sites {
     std::uint32_t first, count;
@@ -138,6 +156,10 @@ class BrightPoints {
   std::size_t point_spots_ = 0;
   std::optional<LightTree> tree_, point_tree_;  ///< over all spots, and over those of points
 };
+
+/// Distance [m] up to which a lamp beside a surface makes a spot for most of the records: the median distance of a
+/// lamp, drawn as light samples are, over the 4 of the division (BrightPoints). 0 if no record has a lamp.
+float reach_of_spots(const Lights& lights, std::span<const IrradianceRecord> records);
 
 /// Adds the light and its gradients to a record of gather rays.
 void add_bright_light(const BrightLight& light, IrradianceRecord& record);

@@ -196,7 +196,8 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   }
   for (const PlacedLight& placed : tracer.frame().lights) has_point_lights_ |= !placed.light.distant();
   directions_ = options.store_volume && media_ && media_->directional();
-  directions_ |= options.store_caustic && normal_maps_see_caustics(tracer.frame().materials);
+  directions_ |=
+      options.store_directions || (options.store_caustic && normal_maps_see_caustics(tracer.frame().materials));
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
     varies_.push_back(material.textures || lets_rays_pass(material));

@@ -34,6 +34,7 @@ struct PhotonOptions {
   /// True for paths alone whose first event is at a mirror or smooth glass: from lights without extent these are the
   /// paths that camera paths do not find. Light goes straight through panes, which is no event.
   bool first_event_smooth = false;
+  bool store_directions = false;  ///< store the photons' directions, also where no later stage needs them
   std::uint32_t pilots = 0;  ///< the first paths of each group, this many, are pilots: hashes record what they meet
 
   /// Sets which kinds are stored from a list such as "direct,caustic,indirect,volume". Throws InputError if the list
@@ -124,8 +125,8 @@ class PhotonTracer {
   const Media* media() const { return media_ ? &*media_ : nullptr; }
   /// The majorants in use, with the lower bound; empty without media.
   const MajorantGrid& majorants() const;
-  /// True if photons store their directions: if tentative photons are stored and a phase function is anisotropic, or if
-  /// caustic photons are stored and caustic light may fall on normal maps.
+  /// True if photons store their directions: on request; if tentative photons are stored and a phase function is
+  /// anisotropic; or if caustic photons are stored and caustic light may fall on normal maps.
   bool stores_directions() const { return directions_; }
   /// Traces batch number `batch` < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;

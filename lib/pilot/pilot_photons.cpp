@@ -9,8 +9,8 @@
 namespace tempolux {
 
 formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds,
-                                   std::uint64_t paths, std::uint64_t seed) {
-  PhotonOptions options{.seed = seed, .photon_count = paths, .group_count = 1};
+                                   std::uint64_t paths, std::uint64_t seed, bool directions) {
+  PhotonOptions options{.seed = seed, .photon_count = paths, .group_count = 1, .store_directions = directions};
   options.set_kinds(kinds);
   const PhotonTracer photons_of(tracer, lights, options);
   std::vector<PhotonBatch> batches(photons_of.batch_count());

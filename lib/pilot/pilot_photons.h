@@ -18,7 +18,7 @@ inline constexpr std::uint64_t kPilotPaths = 1 << 15;
 /// photon-trace --kinds, in the order of their paths. Positions are in scene space [m], flux in W. Same photons for any
 /// number of threads.
 formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds,
-                                   std::uint64_t paths, std::uint64_t seed);
+                                   std::uint64_t paths, std::uint64_t seed, bool directions = false);
 
 /// Largest number of light paths over the usual number. With it photons cost as much as all other stages: 16 x .25 CPU
 /// s.

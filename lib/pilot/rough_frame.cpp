@@ -158,8 +158,35 @@ double adaptive(const std::vector<double>& variances) {
   return roots * roots;
 }
 
-SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
+/// Variance of one sample by part of the picture, as variances() has it, of light that paths find as lone samples
+/// (lone_light): E x^2 of samples that are cut at the value c is c times their mean. Few of the pilot's samples meet
+/// such light, so their own variance says little. Empty if paths find no caustic light, or if all lights have an
+/// extent.
+std::vector<double> lone_variances(const RenderScene& scene, const Lights& aimed, const CameraView& view,
+                                   const RoughOptions& options, const SeenPhotons& caustics, const Levels& levels,
+                                   double times) {
+  if (!(caustics.mean > 0) || scene.frame().lights.empty()) return {};
+  const double cut = times * levels.white;
+  const formats::PhotonBlock photons =
+      pilot_photons(scene.tracer, aimed, "caustic", kPilotPaths, options.seed ^ 0x6c6f6e65ull, true);
+  std::vector<double> lone = lone_light(scene, view, photons, cut);
+  for (std::size_t part = 0; part < lone.size(); ++part) {
+    const double allowed = levels.allowed[part];
+    lone[part] = allowed > 0 ? lone[part] * cut / (allowed * allowed) : 0;
+  }
+  return lone;
+}
+
+/// lone: lone_variances().
+SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work,
+                       const std::vector<double>& lone) {
   const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
+  const auto with_lone = [&](const PartOfLight& part, const PartOfLight& without_caustic) {
+    std::vector<double> found = variances(samples, levels, times, part);
+    const std::vector<double> rest = variances(samples, levels, times, without_caustic);
+    for (std::size_t i = 0; i < lone.size(); ++i) found[i] = std::max(found[i], rest[i] + lone[i]);
+    return adaptive(found);
+  };
   const auto lost = [&](double Sample::*layer) {
     double above = 0;
     for (std::array<Sample, kSamples> some : samples) {
@@ -168,13 +195,14 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
     }
     return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
-  return {.work = work,
-          .all = of([](const Sample& s) { return s.sum(); }),
-          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
-          .other = of([](const Sample& s) { return s.other + s.caustic; }),
-          .other_without_caustic = of([](const Sample& s) { return s.other; }),
-          .missed_caustic = {.lone = lost(&Sample::caustic)},
-          .missed_indirect = {.lone = lost(&Sample::indirect)}};
+  return {
+      .work = work,
+      .all = with_lone([](const Sample& s) { return s.sum(); }, [](const Sample& s) { return s.other + s.indirect; }),
+      .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
+      .other = with_lone([](const Sample& s) { return s.other + s.caustic; }, [](const Sample& s) { return s.other; }),
+      .other_without_caustic = of([](const Sample& s) { return s.other; }),
+      .missed_caustic = {.lone = lost(&Sample::caustic)},
+      .missed_indirect = {.lone = lost(&Sample::indirect)}};
 }
 
 /// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they
@@ -390,12 +418,13 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
 }
 
 /// Sets the values of `rough` that concern gathering.
-void measure_gathering(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
+void measure_gathering(const Picture& picture, const RoughLight& light, const std::vector<double>& lone_light,
+                       RoughFrame& rough) {
   const KnownLight known = light.known();
   RayCounts counts;
   const Samples gathered = samples_of(picture.scene, picture.view, &known, picture.options, counts);
   rough.gathered = true;
-  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
+  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered), lone_light);
   const double lone = rough.gather.missed_caustic.lone;
   rough.gather.missed_caustic = rough.path.missed_caustic;  // camera paths find caustic light
   rough.gather.missed_caustic.lone = lone;
@@ -428,7 +457,9 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   const Picture picture{scene, view, options, Levels(paths, shown, view, options.seed)};
   rough.radiance = mean_of(paths, [](const Sample& s) { return s.sum(); });
   ask(paths, picture.levels, options.pixel_error, rough);
-  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths));
+  const std::vector<double> lone =
+      lone_variances(scene, aimed, view, options, shown.caustic, picture.levels, rough.samples);
+  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths), lone);
   rough.wanted_of = std::max(rough.path.other, kFirst * options.pixel_error * options.pixel_error);
   if (rough.places == 0) return rough;
   compare(picture, shown, paths, rough);
@@ -436,7 +467,7 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   const auto enough = [&] { return options.enough && options.enough(rough); };
   if (enough()) return rough;
   const RoughLight light(scene, std::move(photons), rough.paths_of_light, options);
-  measure_gathering(picture, light, rough);
+  measure_gathering(picture, light, lone, rough);
   if (!enough()) measure_records(picture, light, rough);
   return rough;
 }

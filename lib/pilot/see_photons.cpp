@@ -11,9 +11,11 @@
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
 #include "lib/points/footprint_density.h"
+#include "lib/points/reachable_area.h"
 #include "lib/render/known_light.h"
 #include "lib/audit/photon_splats.h"
 #include "lib/pilot/places_seen.h"
+#include "lib/transport/shading.h"
 
 namespace tempolux {
 namespace {
@@ -108,7 +110,47 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
   return pilot;
 }
 
+/// Radiance that a path finds which goes back from a caustic photon's place: that of one light sample by the lobes S
+/// where the path meets a surface, reflected by the place's Lambert lobe. 0 for a lamp with extent.
+double found_by_path(const RenderScene& scene, const formats::Photon& photon, Vec3 wi, const PathRandom& random) {
+  const Vec3 place = vec_of(photon.position);
+  const float offset = 4 * Reach(scene.tracer).offset();
+  Hit hit;
+  if (!scene.tracer.intersect({place + wi * offset, -wi, 0, 2 * offset}, hit)) return 0;
+  SurfacePoint at = scene.tracer.surface_point(hit);
+  const SurfaceMaterial here(scene.frame(), at);
+  const Rgb reflectance = ShadingPoint(at, wi, here).bsdf.diffuse_albedo();
+  hit = {};
+  if (!scene.tracer.intersect({place + wi * offset, wi, 0, INFINITY}, hit)) return 0;
+  SurfacePoint met = scene.tracer.surface_point(hit);
+  const SurfaceMaterial there(scene.frame(), met);
+  const ShadingPoint lobes(met, -wi, there);
+  LightSample light;
+  if (!lobes.bsdf.has_specular() || lobes.bsdf.specular_is_delta() ||
+      !scene.lights.sample(met.position, lobes.normal, random.get2(0, Purpose::light_point), light) || !light.delta ||
+      !lobes.sees(light.wi))
+    return 0;
+  const Bsdf::Direction from = lobes.bsdf.along(lobes.frame.to_local(light.wi));
+  return double(channel_mean(reflectance * lobes.eval_specular(from) * light.facing_irradiance * from.w.z));
+}
+
 }  // namespace
+
+std::vector<double> lone_light(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
+                               double cut) {
+  const PhotonSplats splats(scene.tracer, view, scene.camera_inside);
+  std::vector<SeenFlux> lone(photons.photons.size());
+  parallel_each(lone.size(), 64, [&](std::size_t i) {
+    const formats::Photon& photon = photons.photons[i];
+    if (photon.kind != formats::PathKind::caustic) return;
+    const SeenFlux seen = seen_flux(splats, view, photons, i);
+    if (seen.radiance > 0 && found_by_path(scene, photon, *photons.direction(i), PathRandom(kLooks, i)) > cut)
+      lone[i] = seen;
+  });
+  std::vector<double> parts(kPilotParts, 0.0);
+  for (const SeenFlux& one : lone) parts[one.part] += one.radiance * kPilotParts;
+  return parts;
+}
 
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons) {
   const std::vector<std::optional<SeenPoint>> places = places_behind(scene, view);

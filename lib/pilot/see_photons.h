@@ -31,4 +31,11 @@ struct SeenLight {
 /// threads.
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons);
 
+/// Caustic light that camera paths find as lone samples, because a narrow lobe sends it on from a lamp without extent,
+/// by part of the picture (pilot_part): mean radiance that samples above `cut` [W/m^2/sr] hold. Each caustic photon
+/// that the camera sees stands for the path back along its direction, which finds the light of a light sample where it
+/// meets the lobe. Photons are as dense as the light, so they show samples that one path in a million finds. Photons
+/// must have directions. Same result for any number of threads.
+std::vector<double> lone_light(const RenderScene& scene, const CameraView& view, const PhotonView& photons, double cut);
+
 }  // namespace tempolux

@@ -49,13 +49,13 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
-  float share = cosine / geometric;
-  if (bsdf.has_specular()) share *= bsdf.arrival_weight(wi, shading);
+  flux *= cosine / geometric;
   if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
     const Ray way{ray.origin, ray.direction, 0, hit.t};
-    share *= media_transmittance(*media, way, {random, 0, way_shadow});
+    flux *= media_transmittance(*media, way, {random, 0, way_shadow});
   }
-  return LampPhoton{place, normal, bsdf, flux * share, distance, point ? point->point : kNone};
+  const float weight = bsdf.has_specular() ? bsdf.arrival_weight(wi, shading) : 1;
+  return LampPhoton{place, normal, bsdf, flux * weight, flux, wi, distance, point ? point->point : kNone};
 }
 
 }  // namespace
@@ -80,7 +80,10 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
     done = wanted;
     if (all.empty() || all.size() >= kEnough) break;
   }
-  for (LampPhoton& photon : all) photon.flux *= 1 / float(done);
+  for (LampPhoton& photon : all) {
+    photon.flux *= 1 / float(done);
+    photon.arriving *= 1 / float(done);
+  }
   return all;
 }
 

@@ -19,6 +19,8 @@ struct LampPhoton {
   Bsdf bsdf;    ///< the lobes at the place
   /// W, as photons store it: arriving flux x |wi . n_s| / |wi . n|, under a coat times Bsdf::arrival_weight
   Rgb flux;
+  Rgb arriving;         ///< W: the same without Bsdf::arrival_weight, for the lobes S
+  Vec3 wi;              ///< unit, towards the lamp
   float lamp_distance;  ///< m, > 0: distance of the lamp
   /// Index of the irradiance point that represents the place; kNone if no point does, as on the lamp's own fittings.
   std::uint32_t point;

@@ -44,6 +44,15 @@ class KnownLight {
   /// Light of lamps close to surfaces that `records` leave out (GatherOptions::lamps_apart). Places that read records
   /// sample this light explicitly, as often as they sample lamps. null: records hold all light.
   const BrightPoints* lamp_spots = nullptr;
+  /// Light of lamps farther away than these, which records hold. Like the light of lamp_spots it is sampled where the
+  /// lobes S of the place or of the spot reflect it. null: rays find it.
+  const BrightPoints* gloss_spots = nullptr;
+  /// True if light is sampled explicitly that comes from a lamp by way of a spot `lamp_distance` m from the lamp. leg
+  /// [m]: length of the path from the spot to the place, times the widths of the lobes at both.
+  bool samples_spot(float leg, float lamp_distance) const {
+    const BrightPoints* const widest = gloss_spots ? gloss_spots : lamp_spots;
+    return widest && widest->has_lamp_light(nullptr, leg, lamp_distance);
+  }
   int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
   /// Is there an environment or an emitting surface, which a ray can meet? If not, and if indirect and caustic light
   /// are known at a place, no ray is sent from the Lambert lobe, because it would find nothing.

@@ -44,6 +44,11 @@ struct PathState {
   /// last event D, if no glossy event widened the path; 0 if it has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
+  /// Width of the lobe from which `ray` comes if light of spots beside lamps was sampled for this lobe; else 0.
+  float divided = 0;
+  /// Length [m] of the path's leg before the last vertex, times the widths of the lobes at both ends, if light of spots
+  /// was sampled for it; else 0.
+  float divided_leg = 0;
 
   /// Widens the spread by a glossy event of this pdf [1/sr]. The spread of a Lambert lobe is 1; its pdf is 1 / pi in
   /// the middle.
@@ -60,6 +65,12 @@ struct Vertex {
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
+  /// Length [m] of the leg to this vertex times PathState::divided. If it is above 0, the light of lamps close to this
+  /// vertex is divided (BrightPoints).
+  float divided_leg = 0;
+  /// For which lobes light of spots beside lamps is sampled here: from spots' Lambert lobes to the Lambert lobe, from
+  /// their lobes S to the Lambert lobe, and to the lobes S.
+  bool spots = false, spots_of_gloss = false, spots_in_gloss = false;
   float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
 
   /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection and
@@ -123,13 +134,18 @@ class EyeTracer {
   Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
   void sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
                     Layers& result) const;
-  void sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random, Layers& result) const;
+  void sample_spots(const BrightPoints& spots, const Vertex& at, const PathState& state, const PixelRandom& random,
+                    Layers& result) const;
   void add_light(const Vertex& at, const PathState& state) const;
   void add_met(Rgb light, const PathState& state) const;
   void arrive(const SurfacePoint& point, PathState& state) const;
   void add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const;
   bool leave(const Vertex& at, PathState& state) const;
   bool step(PathState& state) const;
+  void choose_spots(Vertex& at, const PathState& state) const;
+  bool was_sampled(float divided_leg, Vec3 lamp, Vec3 position) const {
+    return divided_leg > 0 && known_->samples_spot(divided_leg, length(lamp - position));
+  }
   void go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const;
   /// Adds `rays` to the counter `as`. If the path belongs to the part onward, also adds the rays' cost to
   /// counts_.onward.
@@ -198,6 +214,12 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   last.normal = next.transmitted ? -x.normal : x.normal;
   last.light_share = next.transmitted ? x.bsdf.light_share_behind() : 1 - x.bsdf.light_share_behind();
   last.from = sampled_lights();
+  state.divided_leg = 0;
+  if (at.divided_leg > 0 && !next.delta)
+    state.divided_leg = at.divided_leg * (next.diffuse ? 1 : BrightPoints::width_of(x.gloss_density(next.wi)));
+  state.divided = 0;
+  if (next.diffuse) state.divided = at.spots_of_gloss;
+  else if (!next.delta && at.spots_in_gloss) state.divided = BrightPoints::width_of(x.gloss_density(next.wi));
   last.pdf_solid_angle = times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.pdf_specular(next.wi));
   go_on(spawn_ray(x.surface, wi), state);
   return true;
@@ -219,6 +241,7 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, PathState& state) co
   count(shadow_rays, counts_.shadow, state);
   if (!survives(state, kLargestSurvivalInMedia)) return false;
   const Vec3 travel = sample_hg(point.g, point.travel, state.random.get2(state.bounce, Purpose::phase));
+  state.divided = state.divided_leg = 0;
   state.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
   go_on({point.position, travel, 0, INFINITY}, state);
   return true;
@@ -274,6 +297,13 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
     if (has_specular) glossy *= mis_power(pdf, at.times_specular * x.pdf_specular(wi));
   }
+  if (at.divided_leg > 0 && !light.distant) {
+    const auto sampled = [&](float width) {
+      return was_sampled(at.divided_leg * width, light.position, x.surface.position);
+    };
+    if (has_diffuse && sampled(1)) diffuse = Rgb(0.0f);
+    if (has_specular && sampled(BrightPoints::width_of(x.gloss_density(wi)))) glossy = Rgb(0.0f);
+  }
   if (is_black(diffuse) && is_black(glossy)) return;
   count(1, counts_.shadow, state);
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
@@ -287,19 +317,53 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   if (state.path.after(false).only_specular()) result.mirrored += float(channel_mean(arriving * glossy));
 }
 
-/// Takes one sample of the light that records leave out (KnownLight::lamp_spots).
-void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random,
-                                  Layers& result) const {
+/// Decides for which lobes of a surface light of lamps close to other surfaces is sampled. At another moment of the
+/// shutter spots lie elsewhere than those of the known light, and gloss samples none.
+void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
+  if (!known_ || (!known_->lamp_spots && !known_->gloss_spots)) return;
+  at.spots = at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps);
+  const bool gloss = !scene_.stored && !state.inside.any();
+  at.spots_of_gloss = gloss && at.known.has(LightKind::indirect) && !at.known.has(LightKind::direct) &&
+                      !at.known.has(LightKind::caustic);
+  at.spots_in_gloss = gloss && state.path.sharp() && samples_specular(at, state);
+}
+
+/// Takes one sample of the light of lamps close to other surfaces: what records leave out, if these are
+/// KnownLight::lamp_spots, and what gloss here or there reflects.
+void EyeTracer::sample_spots(const BrightPoints& spots, const Vertex& at, const PathState& state,
+                             const PixelRandom& random, Layers& result) const {
   const ShadingPoint& x = at.x;
-  GatherCounts rays;
   const StoredAt stored(scene_, x);
-  BrightPoints::Receiver place{*stored.surface, stored.shading, x.bsdf.has_specular() ? &x.bsdf : nullptr};
-  place.choice = random.get1(state.bounce, Purpose::light_choice);
+  const std::optional<BrightPoints::LampSpot> spot =
+      spots.lamp_spot(*stored.surface, stored.shading, random.get1(state.bounce, Purpose::light_choice));
+  if (!spot) return;
+  const float cosine = dot(spot->wi, stored.shading);
+  const auto divided = [&](float width) { return known_->samples_spot(spot->distance * width, spot->lamp_distance); };
+  Rgb indirect(0.0f), caustic(0.0f), of_matte(0.0f), of_gloss(0.0f);
+  if (at.spots || at.spots_of_gloss) {
+    const float arrival = x.bsdf.has_specular() ? x.bsdf.arrival_weight(spot->wi, stored.shading) : 1;
+    const Rgb reflected = x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share * cosine * arrival);
+    if (at.spots && &spots == known_->lamp_spots && divided(1)) indirect = reflected * spot->matte;
+    if (at.spots_of_gloss && divided(spot->gloss_width)) caustic = reflected * spot->glossy;
+  }
+  if (at.spots_in_gloss && x.sees(spot->wi)) {
+    const Vec3 wi = x.frame.to_local(spot->wi);
+    const float width = BrightPoints::width_of(x.gloss_density(wi));
+    if (divided(width)) {
+      const Rgb reflected = x.eval_specular(x.bsdf.along(wi)) * cosine;
+      of_matte = reflected * spot->matte;
+      if (divided(width * spot->gloss_width)) of_gloss = reflected * spot->glossy;
+    }
+  }
+  if (is_black(indirect) && is_black(caustic) && is_black(of_matte) && is_black(of_gloss)) return;
   const PathRandom within(random.hashed().bits(state.bounce, Purpose::gather), state.bounce);
-  const Rgb irradiance(known_->lamp_spots->arriving(place, 1, within, rays).irradiance);
-  count(rays.shadow_rays, counts_.shadow, state);
-  result[state.path.after(true).after(true).layer()] +=
-      state.throughput * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share) * irradiance;
+  count(1, counts_.shadow, state);
+  const Rgb arriving = state.throughput * transmittance(scene_.tracer, spot->shadow, {within, 0, way_shadow});
+  const EyePath diffuse = state.path.after(true), glossy = state.path.after(false);
+  result[diffuse.after(true).layer()] += arriving * indirect;
+  result[diffuse.after(false).layer()] += arriving * caustic;
+  result[glossy.layer()] += arriving * (of_matte + of_gloss);
+  if (glossy.after(false).only_specular()) result.mirrored += float(channel_mean(arriving * of_gloss));
 }
 
 /// Samples light at a surface; at the first matte surface with effort_.lit samples, which are added to the part `lit`.
@@ -311,8 +375,11 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
     else
       for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
   };
-  if (at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps))
-    each([&](const PixelRandom& random, Layers& result) { sample_lamp_spots(at, state, random, result); });
+  const bool gloss = at.spots_of_gloss || at.spots_in_gloss;
+  for (const BrightPoints* const spots :
+       {known_ ? known_->lamp_spots : nullptr, known_ ? known_->gloss_spots : nullptr})
+    if (spots && (gloss || (at.spots && spots == known_->lamp_spots)))
+      each([&](const PixelRandom& random, Layers& result) { sample_spots(*spots, at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;
   if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
   each([&](const PixelRandom& random, Layers& result) { sample_light(at, state, random, false, result); });
@@ -345,7 +412,7 @@ void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
     state.throughput *= state.inside.transmittance_to(frame.materials, point.material, front, state.hit.t);
   state.cone.advance(state.hit.t);
   state.distance += state.spread * state.hit.t;
-  if (state.light_counts())
+  if (state.light_counts() && !was_sampled(state.divided_leg, point.position, state.last.position))
     add_met(state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width), state);
 }
 
@@ -474,6 +541,9 @@ bool EyeTracer::step(PathState& state) const {
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
     at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+  choose_spots(at, state);
+  if (state.divided > 0 && x.bsdf.has_diffuse())
+    at.divided_leg = state.divided * length(point.position - state.last.position);
   add_light(at, state);
   return !(at.known.has(LightKind::direct) && !x.bsdf.has_specular()) && leave(at, state);
 }

@@ -80,27 +80,28 @@ void blur(std::vector<double>& image, int width, int height, int r) {
 
 /// Moves outliers that can be spread with box radius r from `waiting` to `spread`, in their order. An outlier of light
 /// L spreads over the 3 x 3 cells of r x r pixels around it. Let S be the sum of the allowed errors e in these cells, U
-/// the light that they have received before, and n = 9 r^2 their number of pixels. Three boxes of b = 2 r + 1 pixels
-/// leave the share m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3). If 1 / m^2 is less than n, it
-/// replaces n, and S and U are reduced by the same factor. The outlier is spread if
+/// the light that they have received before, and n their number of pixels, 9 r^2 inside the picture. Three boxes of b =
+/// 2 r + 1 pixels leave the share m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3). If 1 / m^2 is less
+/// than 9 r^2, n, S and U are reduced by the factor between them. The outlier is spread if
 ///     L <= S: its light per pixel is below the allowed error; and
 ///     n L / S (2 U / S + L / S) <= seen2: the squared error that it adds over e^2, n ((U + L)^2 - U^2) / S^2, is at
 ///     most its visible squared error as a single bright pixel.
-/// Cells outside the picture add nothing to S, because blur() mirrors their light back.
+/// Cells outside the picture add nothing to S and n, because blur() mirrors their light back.
 void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& errors, const std::vector<double>& got,
                   int width, int r, std::vector<Excess>& spread) {
   struct Cell {
-    double room = 0, used = 0;
+    double room = 0, used = 0, pixels = 0;
   };
   const std::size_t w = std::size_t(width), side = std::size_t(r);
   const int columns = (width + r - 1) / r, rows = int((errors.size() / w + side - 1) / side);
   std::vector<Cell> cells(std::size_t(columns * rows));
   const double box = 2 * r + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
-  const double pixels = std::min(9.0 * r * r, 1 / (middle * middle)), share = pixels / (9.0 * r * r);
+  const double share = std::min(1.0, 1 / (9.0 * r * r * middle * middle));
   for (std::size_t p = 0; p < errors.size(); ++p) {
     Cell& cell = cells[p / w / side * std::size_t(columns) + p % w / side];
     cell.room += share * errors[p];
     cell.used += share * got[p];
+    cell.pixels += share;
   }
   std::vector<Excess> stay;
   for (const Excess& excess : waiting) {
@@ -110,9 +111,10 @@ void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& error
       for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u) {
         around.room += cells[std::size_t(v * columns + u)].room;
         around.used += cells[std::size_t(v * columns + u)].used;
+        around.pixels += cells[std::size_t(v * columns + u)].pixels;
       }
     const double light = excess.light() / around.room, used = around.used / around.room;
-    const bool fits = around.room > 0 && light <= 1 && pixels * light * (2 * used + light) <= excess.seen2;
+    const bool fits = around.room > 0 && light <= 1 && around.pixels * light * (2 * used + light) <= excess.seen2;
     if (fits) cells[std::size_t(j * columns + i)].used += excess.light();
     (fits ? spread : stay).push_back(excess);
   }

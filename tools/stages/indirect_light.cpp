@@ -4,6 +4,7 @@
 
 #include "lib/points/lamp_light.h"
 #include "lib/gather/localised_file.h"
+#include "lib/material/surface_material.h"
 #include "lib/points/whole_photons.h"
 #include "lib/scene/static_scene.h"
 
@@ -115,14 +116,28 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const Render
   records_ = std::make_unique<RecordStore>(float(file.header.least_cosine));
   history_ = add_records(tool, name, file, frame, *records_);
   known_.records = records_.get();
-  if (!(file.header.lamps_apart > 0)) return;
-  no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(),
-                                             float(file.header.lamps_apart / double(kBesideLamp)));
-  const std::vector<LampPhoton> photons = photons_beside_lamps(scene.tracer, scene.lights, *no_points_);
-  lamp_spots_ = std::make_unique<BrightPoints>(scene.tracer, scene.lights, *no_points_, std::vector<float>(),
-                                               BrightOptions{.beside_lamps = photons});
+  const float apart = float(file.header.lamps_apart);
+  const float reach = std::max(apart, lobes_of(frame).specular ? reach_of_spots(scene.lights, records_->records()) : 0);
+  if (!(reach > 0)) return;
+  no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(), reach / kBesideLamp);
+  std::vector<LampPhoton> photons = photons_beside_lamps(scene.tracer, scene.lights, *no_points_);
+  // Glossy rays must not read light of spots from points.
+  if (lookup_)
+    for (const LampPhoton& photon : photons)
+      if (const PointLookup::Light* const light = lookup_->find(photon.place.position, photon.normal))
+        lookup_->note_lamp(light->point);
+  const auto first_far = std::ranges::stable_partition(photons, [apart](const LampPhoton& photon) {
+                           return photon.lamp_distance < apart;
+                         }).begin();
+  const auto spots = [&](auto first, auto last) {
+    return std::make_unique<BrightPoints>(scene.tracer, scene.lights, *no_points_, std::vector<float>(),
+                                          BrightOptions{.beside_lamps = {first, last}});
+  };
+  if (apart > 0) lamp_spots_ = spots(photons.begin(), first_far);
+  if (first_far != photons.end()) gloss_spots_ = spots(first_far, photons.end());
   known_.lamp_spots = lamp_spots_.get();
-  tool.stats().count("lamp_sites", double(lamp_spots_->site_count()));
+  known_.gloss_spots = gloss_spots_.get();
+  tool.stats().count("lamp_sites", double(photons.size()));
 }
 
 }  // namespace tempolux::tools

@@ -47,6 +47,7 @@ class IndirectLight {
   DividedGatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
   std::unique_ptr<BrightPoints> bright_, lamp_spots_;
+  std::unique_ptr<BrightPoints> gloss_spots_;
   std::unique_ptr<PointLookup> no_points_;  ///< holds the spacing that lamp_spots_ needs, and no points
   std::unique_ptr<LocalisedLight> localised_;
   std::unique_ptr<MeshLight> mesh_;
