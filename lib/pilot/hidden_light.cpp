@@ -25,10 +25,11 @@ bool may_hide_light(const SceneFrame& frame) {
          first_smooth_material(frame) != kNone;
 }
 
-double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture) {
+double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture,
+                    double least) {
   const formats::PhotonBlock photons = pilot_photons(scene.tracer, without_extent, "caustic", kPilotPaths, 0);
   const SeenPhotons hidden = see_photons(scene, view, photons).caustic;
-  const bool sure = hidden.mean - kAuditErrors * hidden.mean_error > kAuditLimit * picture;
+  const bool sure = hidden.mean - kAuditErrors * hidden.mean_error > least * picture;
   return sure ? hidden.mean / (picture > 0 ? picture : hidden.mean) : 0;
 }
 

@@ -2,6 +2,7 @@
 // lamp without extent: its share of a picture, and the light itself for references.
 #pragma once
 
+#include "lib/audit/audit.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/path_tracer.h"
@@ -12,10 +13,11 @@ namespace tempolux {
 bool may_hide_light(const SceneFrame& frame);
 
 /// Mean radiance of the visible caustic light from these lights, estimated by kPilotPaths light paths, over the mean
-/// radiance `picture` [W/m^2/sr] of the picture. 1 if the picture is black; 0 if the share is not above kAuditLimit by
+/// radiance `picture` [W/m^2/sr] of the picture. 1 if the picture is black; 0 if the share is not above `least` by
 /// kAuditErrors standard errors. `without_extent`: lights of Lights::Which::punctual, whose photons are aimed where the
 /// camera looks. Same result for any number of threads.
-double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture);
+double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture,
+                    double least = kAuditLimit);
 
 /// Adds this light to the layers caustic and indirect of a path-traced picture: `paths` light paths (rounded up to a
 /// multiple of PhotonTracer::kBatch) whose first event is at a mirror or smooth glass, each photon connected to the

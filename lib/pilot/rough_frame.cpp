@@ -400,8 +400,9 @@ void compare(const Picture& picture, const SeenLight& photons, const Samples& pa
     rough.caustic.push_back({light2 / allowed2, allowed > 0 ? light2 / (allowed * allowed) : 0,
                              caustics.photons[part] / double(kPilotPaths)});
   }
-  if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
-    caustic.never = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
+  if (picture.options.without_extent && caustics.mean > picture.options.least_hidden * level)
+    caustic.never =
+        hidden_share(picture.scene, *picture.options.without_extent, picture.view, level, picture.options.least_hidden);
 }
 
 /// Sets lower bounds of work and error for gathering and records, before they are measured. Work: a camera ray, and one

@@ -9,6 +9,7 @@
 #include <vector>
 #include <vector>
 
+#include "lib/audit/audit.h"
 #include "lib/light/aim.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
@@ -86,6 +87,7 @@ struct RoughOptions {
   /// frame is returned as it is. Empty: everything is measured.
   std::function<bool(const RoughFrame&)> enough = {};
   const Lights* without_extent = nullptr;  ///< the lights of hidden_share(); null: none hides light
+  double least_hidden = kAuditLimit;       ///< hidden_share(): `least`
 };
 
 /// Takes four samples at each place by whole paths and four by paths that end at the points of kPilotPaths light paths,

@@ -78,6 +78,7 @@ struct Look {
 struct Sharing {
   double new_share = 0;  ///< Decisions::new_share
   double pictures = 1, records = 1;
+  double least_hidden = kAuditLimit;  ///< RoughOptions::least_hidden
 };
 
 class FramePilot {
@@ -110,6 +111,7 @@ class FramePilot {
     };
     RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
     options.without_extent = without_extent_ ? &*without_extent_ : nullptr;
+    options.least_hidden = sharing.least_hidden;
     options.enough = [&](const RoughFrame& rough) { return enough(look_of(rough)); };
     const Lights guided = guided_lights({tracer_, lights_, lights_.has_suns()}, view_);
     return look_of(rough_frame({tracer_, guided, lights_.has_suns()}, aimed_lights, view_, options));
@@ -451,9 +453,13 @@ struct LookedAt {
 
   /// also: a method that must be measured, too.
   LookedAt(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
-           std::optional<IndirectMethod> also) {
+           std::optional<IndirectMethod> also, double least_hidden = kAuditLimit) {
     const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
-    const auto sharing_of = [&](const FramePilot& pilot) { return sharing_in(segment, wish, media, pilot); };
+    const auto sharing_of = [&](const FramePilot& pilot) {
+      Sharing found = sharing_in(segment, wish, media, pilot);
+      found.least_hidden = least_hidden;
+      return found;
+    };
     looks = look_at({d.looked, wish, media, pilot_of, sharing_of, also}, middle, sharing);
   }
 };
@@ -480,12 +486,12 @@ void decide_by_looks(const PlannedSegment& segment, const Wish& wish, bool media
 
 /// Decides about the light without a shot. `view_frames`: the frames from which view_of() looks.
 void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
-                  const SceneSource& source, Decisions& d) {
+                  const SceneSource& source, Decisions& d, double least_hidden = kAuditLimit) {
   if (wish.method == FrameMethod::preview) {
     StaticTree tree;
     return decide_preview(segment, view_frames, wish, source, tree, d);
   }
-  LookedAt looked(segment, wish, media, source, d, {});
+  LookedAt looked(segment, wish, media, source, d, {}, least_hidden);
   decide_by_looks(segment, wish, media, source, looked, d);
   if (d.photons()) d.view = view_of(view_frames, d.kinds, wish, source, looked.tree);
 }
@@ -541,7 +547,9 @@ Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wis
   const PlannedSegment& middle = pieces[pieces.size() / 2];
   d.looked = {pieces.front().first, middle.first + (middle.last - middle.first) / 2, pieces.back().last};
   refuse_paths(wish, media);
-  if (d.photons()) decide_light(moving, frames_of(pieces), wish, media, source, d);
+  // Light that paths never find counts from half of the share on from which it counts in a segment. Else a share near
+  // the limit would be found in some segments alone, and the light would jump where they meet.
+  if (d.photons()) decide_light(moving, frames_of(pieces), wish, media, source, d, kAuditLimit / 2);
   return d;
 }
 
