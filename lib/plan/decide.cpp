@@ -177,44 +177,64 @@ std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool 
   return best == ways.end() ? std::nullopt : std::optional(*best);
 }
 
-/// Measures each frame until its own best way has been measured. If the best way of the whole segment is not measured
-/// at some of the frames, measures these frames again until it is. Sets `middle` to the pilot of the frame in the
-/// middle.
+/// The way with a method and a source of caustic light; null if it is not there, as in a frame that sees no Lambert
+/// lobe.
+const Way* find_way(const std::vector<Way>& ways, IndirectMethod method, bool map) {
+  const auto found = std::ranges::find_if(ways, [&](const Way& way) { return way.method == method && way.map == map; });
+  return found == ways.end() ? nullptr : &*found;
+}
+
+/// The least ratio of scores at which a segment departs from the shot's way. error: standard error of its logarithm.
+double departure(double error) { return kDeparture * std::exp(2 * error); }
+/// The error of a single frame is not known and taken to be as large as kDeparture.
+const double kErrorOfOne = std::log(kDeparture);
+
+/// True if the ways of some frames are known well enough to follow the shot: its way is measured and misses no light,
+/// and no bound of another way allows a departure (departs()).
+bool may_follow(const std::vector<Way>& ways, std::size_t frames, const Wish& wish, bool media, const Decisions& shot) {
+  const double least = departure(frames > 1 ? 0 : kErrorOfOne);
+  const Way* const of_shot = find_way(ways, shot.indirect, shot.caustic_map);
+  return of_shot && of_shot->measured && is_allowed(*of_shot, wish, media) && !(of_shot->never > 0) &&
+         !(of_shot->uncertain > 0) && std::ranges::all_of(ways, [&](const Way& way) {
+           return way.measured || way.score() * least >= of_shot->score();
+         });
+}
+
+/// Measures each frame until its own best way has been measured, or until the segment may follow the shot. If the best
+/// way of the whole segment is not measured at some of the frames, measures these frames again until it is. Sets
+/// `middle` to the pilot of the frame in the middle.
 struct Looking {
   const std::vector<int>& frames;
   const Wish& wish;
   bool media;
   std::function<std::unique_ptr<FramePilot>(int)> pilot_of;
   std::function<Sharing(const FramePilot&)> sharing_of;
-  std::optional<IndirectMethod> also;  ///< a method that must be measured, too
+  const Decisions* shot;  ///< its way must be measured, too; null: there is no shot
 };
 std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, Sharing& sharing) {
-  const auto& [frames, wish, media, pilot_of, sharing_of, also] = looking;
+  const auto& [frames, wish, media, pilot_of, sharing_of, shot] = looking;
   const int places = (kPilotPlaces + int(frames.size()) - 1) / int(frames.size());
   std::vector<Look> looks;
   for (const int frame : frames) {
     std::unique_ptr<FramePilot> pilot = pilot_of(frame);
     if (looks.empty()) sharing = sharing_of(*pilot);
     looks.push_back(pilot->look(places, sharing, [&](const Look& look) {
+      const Decisions* const of_shot = looking.shot;
+      if (of_shot && may_follow(look.ways, looking.frames.size(), looking.wish, looking.media, *of_shot)) return true;
       const std::optional<Way> best = best_of(look.ways, looking.wish, looking.media);
-      return (!best || best->measured) && (!looking.also || look.knows(*looking.also));
+      return (!best || best->measured) && (!of_shot || look.knows(of_shot->indirect));
     }));
     if (looks.size() == (frames.size() + 1) / 2) middle = std::move(pilot);
   }
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    const std::optional<Way> best = best_of(joined_ways(looks), wish, media);
+    const std::vector<Way> ways = joined_ways(looks);
+    if (shot && may_follow(ways, frames.size(), wish, media, *shot)) break;
+    const std::optional<Way> best = best_of(ways, wish, media);
     if (!best || looks[i].knows(best->method)) continue;
     looks[i] = pilot_of(frames[i])->look(places, sharing, [&](const Look& look) { return look.knows(best->method); });
     i = std::size_t(-1);  // the best way may have changed
   }
   return looks;
-}
-
-/// The way with a method and a source of caustic light; null if it is not there, as in a frame that sees no Lambert
-/// lobe.
-const Way* find_way(const std::vector<Way>& ways, IndirectMethod method, bool map) {
-  const auto found = std::ranges::find_if(ways, [&](const Way& way) { return way.method == method && way.map == map; });
-  return found == ways.end() ? nullptr : &*found;
 }
 
 /// Does the segment have to depart from the shot's way to light? (decide.h)
@@ -236,8 +256,8 @@ bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const
     sum += ratio;
     squares += ratio * ratio;
   }
-  const double error = n > 1 ? std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1)) : 0;
-  return of_shot->score() > best->score() * kDeparture * std::exp(2 * error);
+  const double error = n > 1 ? std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1)) : kErrorOfOne;
+  return of_shot->score() > best->score() * departure(error);
 }
 
 /// Sets the decisions about indirect light so that they suit every measured frame.
@@ -351,8 +371,9 @@ void decide_preview(const PlannedSegment& segment, const std::vector<int>& view_
 
 }  // namespace
 
-std::vector<int> looked_frames(const PlannedSegment& segment) {
-  std::set<int> looked{segment.first, segment.first + (segment.last - segment.first) / 2, segment.last};
+std::vector<int> looked_frames(const PlannedSegment& segment, bool of_shot) {
+  std::set<int> looked{segment.first + (segment.last - segment.first) / 2};
+  if (!of_shot) looked.insert({segment.first, segment.last});
   std::size_t events = 0;
   for (std::size_t i = 1; i < segment.frames.size() && events < kMostEvents; ++i) {
     const auto light = [&](std::size_t k) { return segment.frames[k].light; };
@@ -451,16 +472,16 @@ struct LookedAt {
   std::vector<Look> looks;
   Sharing sharing;
 
-  /// also: a method that must be measured, too.
+  /// shot: the decisions of the shot; its way must be measured, too.
   LookedAt(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
-           std::optional<IndirectMethod> also, double least_hidden = kAuditLimit) {
+           const Decisions* shot, double least_hidden = kAuditLimit) {
     const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
     const auto sharing_of = [&](const FramePilot& pilot) {
       Sharing found = sharing_in(segment, wish, media, pilot);
       found.least_hidden = least_hidden;
       return found;
     };
-    looks = look_at({d.looked, wish, media, pilot_of, sharing_of, also}, middle, sharing);
+    looks = look_at({d.looked, wish, media, pilot_of, sharing_of, shot}, middle, sharing);
   }
 };
 
@@ -491,7 +512,7 @@ void decide_light(const PlannedSegment& segment, const std::vector<int>& view_fr
     StaticTree tree;
     return decide_preview(segment, view_frames, wish, source, tree, d);
   }
-  LookedAt looked(segment, wish, media, source, d, {}, least_hidden);
+  LookedAt looked(segment, wish, media, source, d, nullptr, least_hidden);
   decide_by_looks(segment, wish, media, source, looked, d);
   if (d.photons()) d.view = view_of(view_frames, d.kinds, wish, source, looked.tree);
 }
@@ -517,7 +538,7 @@ void copy_shot(const PlannedSegment& segment, const Decisions& shot, const Looke
 /// Takes the shot's decisions about the light where they suit the segment.
 void take_from_shot(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                     const Decisions& shot, Decisions& d) {
-  LookedAt looked(segment, wish, media, source, d, shot.indirect);
+  LookedAt looked(segment, wish, media, source, d, &shot);
   if (departs(looked.looks, wish, media, shot)) {
     decide_by_looks(segment, wish, media, source, looked, d);
     std::ranges::find(d.reasons, kRecordsReason, &Reason::stage)->because +=
@@ -557,7 +578,7 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
                  const Decisions* shot) {
   Decisions d = begin(segment, media);
   d.pixel_error = wish.pixel_error;
-  d.looked = looked_frames(segment);
+  d.looked = looked_frames(segment, shot != nullptr);
   refuse_paths(wish, media);
   if (!d.photons()) {
     decide_walk(segment, d);

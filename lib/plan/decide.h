@@ -24,9 +24,9 @@ struct SceneSource {
 };
 
 /// Frames of a segment for which pilots run: the first, the middle and the last one, and up to four at which
-/// something begins to move or comes to rest. A frame that shows the same picture as an earlier one is left out.
-/// Ascending.
-std::vector<int> looked_frames(const PlannedSegment& segment);
+/// something begins to move or comes to rest. In a segment of a shot the shot's frames have been looked at, so the first
+/// and the last one are left out. A frame that shows the same picture as an earlier one is left out. Ascending.
+std::vector<int> looked_frames(const PlannedSegment& segment, bool of_shot = false);
 
 /// Makes the decisions of a shot, from which its segments depart only for a reason (decide). `pieces`: Plan::shot. With
 /// one piece these are the decisions of that segment. With more, pilots run for the first frame of the first piece, the

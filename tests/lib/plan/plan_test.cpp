@@ -218,6 +218,7 @@ TEST(LookedFrames, AreEndsMiddleAndWhereSomethingComesOrGoes) {
   slide(scene, kBox, places);
   // Frames 0 and 11 show the same picture. The box jumps at frame 17 and moves again at 23.
   EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0]), (std::vector<int>{0, 17, 23}));
+  EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0], true), (std::vector<int>{11, 17, 23})) << "a segment of a shot";
 }
 
 TEST(Graph, AFrameMadeAloneHasTheFilesThatItHasInARange) {
