@@ -49,5 +49,10 @@ grep -q 'frame' "$work/said" || bad "refused without a reason: $(cat "$work/said
 "$bin/frame-render" $scene --frame 22 --size 64x36 --irradcache "$light" --still "$still" --still-frame 23 \
   -o "$work/no.exr" -q 2> "$work/said"
 [ $? = 2 ] && grep -q -- '--still-' "$work/said" || bad "no word about the missing twin: $(cat "$work/said")"
+for blur in '--f-stop 2 --focus 3' '--shutter 180'; do
+  "$bin/frame-render" $scene --frame 22 --size 64x36 --irradcache "$light" --still "$still" --still-frame 23 $blur \
+    --still-irradcache "$light" -o "$work/no.exr" -q 2> "$work/said"
+  [ $? = 2 ] && grep -q 'blurs' "$work/said" || bad "$blur: $(cat "$work/said")"
+done
 [ ! -e "$work/no.exr" ] || bad 'a refused run left a file'
 exit $failed

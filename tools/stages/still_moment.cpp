@@ -12,6 +12,12 @@ StillMoment::StillMoment(Tool& tool, SceneInput& input, const StillOptions& opti
                          std::uint64_t seed)
     : frame_(input.at(options.number)), image_(load_exr(options.frame)) {
   tool.depends_on(options.frame);
+  if (now.has_lens() || now.camera().camera.shutter_frames > 0)
+    throw InputError(
+        "--still: the camera's lens or shutter blurs the frame; leave out one, or make it sharp with "
+        "--f-stop 0 --shutter 0 (make: METHOD=frames, or FSTOP=0 SHUTTER=0)");
+  if (frame_.media)
+    throw InputError("--still: the scene has media, which all light meets; leave out --still (make: METHOD=frames)");
   check_identity(tool, options.frame, identity_in(image_), frame_);
   const CameraMatrices camera{now.world_to_camera(), now.world_to_ndc()};
   if (shows_other_camera(image_, camera))
