@@ -132,7 +132,8 @@ def update_error(chain):
         gathered = {tuple(r.position): r for r in read_irradcache(str(chain.file("a", f, "irradcache"))).records}
         for r in read_irradcache(str(chain.file("u", f, "irradcache"))).records:
             twin = gathered.get(tuple(r.position))
-            if r.set == 0 and twin and r.influence <= LOW * max(r.irradiance):
+            # A dark place has no ratio, and no weight.
+            if r.set == 0 and twin and sum(twin.irradiance) > 0 and r.influence <= LOW * max(r.irradiance):
                 ratios.append(sum(r.update) / sum(twin.irradiance) - 1)
                 weights.append(sum(twin.irradiance))
     size = sorted(map(abs, ratios))
