@@ -40,7 +40,7 @@ add_test(NAME pipelines.advice COMMAND sh tests/pipelines/advice.sh WORKING_DIRE
 
 # Stages together, run by make at the top of the tree.
 foreach(script run_words rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
-               scenes leaving_out walkthrough filter dynamic temporal preview split smoke own_scene)
+               scenes leaving_out walkthrough still filter dynamic temporal preview split smoke own_scene)
   add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(pipelines.${script} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
