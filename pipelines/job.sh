@@ -13,7 +13,7 @@
 
 run() {
   keyed=yes called=job
-  # Of the line of the list: what made.sh asks RUN for; files; optional files.
+  # Reads from the job's line in the list: what made.sh asks RUN for, the files, the optional files.
   { read -r NEED; read -r makes; read -r also; } << END
 $(awk -F '\t' -v name="$1" '$1 == name { print $2, $3; print $5; print $6 }' "$JOBS")
 END

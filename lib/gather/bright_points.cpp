@@ -284,7 +284,7 @@ std::optional<BrightPoints::LampSpot> BrightPoints::lamp_spot(const SurfacePoint
 
 float reach_of_spots(const Lights& lights, std::span<const IrradianceRecord> records) {
   if (!lights.has_placed()) return 0;
-  // Of n records n^(2/3) are looked at: they suffice for a median, and the work stays small.
+  // n^(2/3) of n records suffice for a median, and the work stays small.
   const std::size_t step = std::size_t(std::cbrt(double(records.size()))) + 1;
   std::vector<float> distances;
   for (std::size_t i = 0; i < records.size(); i += step) {

@@ -46,9 +46,10 @@ double emission_weight(Rgbd flux);
 /// the triangles of `surfaces` in order, then the frame's punctual lights, then the environment if there is one.
 /// A probability is proportional to the slot's maximum flux (emission_weight) over the segment's frames. A directional
 /// light's flux is its irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times
-/// the integral of its radiance. A part of a triangle whose emission is textured counts with its mean. Little of the
-/// environment's light may enter a building, or lamps may hardly matter outdoors. So if there are an environment and
-/// other lights, the environment gets at least kUnguidedShare of the photons, and so do the others.
+/// the integral of its radiance. A part of a triangle whose emission is textured counts with its mean. Flux is a poor
+/// measure between an environment and other lights: a building lets in little of the sky's light, and outdoors lamps
+/// add little to the light of the sky. So if a scene has both, the environment gets at least kUnguidedShare of the
+/// photons, and the other lights together get at least as much.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of the surfaces that emit at some frame
   std::vector<std::shared_ptr<const EmissionParts>> parts;  ///< of `surfaces`, shares of the first frame

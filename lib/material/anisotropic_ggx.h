@@ -11,7 +11,8 @@
 namespace tempolux {
 
 /// GGX with the width alpha_t along `grain` and alpha_b across it, alpha_t >= alpha_b. KHR_materials_anisotropy defines
-/// alpha_b = roughness^2 and alpha_t = alpha_b + (1 - alpha_b) strength^2. Masking is Smith's, correlated by height.
+/// alpha_b = roughness^2 and alpha_t = alpha_b + (1 - alpha_b) strength^2. The masking function
+/// is that of Smith with correlated heights.
 /// Visible normals are sampled as by Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018.
 /// BasicGloss (opaque_lobes.h) takes this class as its width. Directions are in the local frame, z = normal.
 class AnisotropicGgx {

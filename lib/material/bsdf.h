@@ -27,8 +27,9 @@ namespace tempolux {
 /// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. With several lobes
 /// above, c(w) is the product of their factors, and
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
-/// The coupling is a factor of wi times a factor of wo. So records, points and photons may keep light that is weighted
-/// by c(wi), and are exact for every wo, also below a coat or a sheen. Below a single lobe
+/// c(wi) does not depend on wo, and c(wo) does not depend on wi. So records, points and photons can store light that is
+/// already multiplied by c(wi), and a reader multiplies it by c(wo) for its own direction. This is exact for every wo,
+/// also below a coat or a sheen. Below a single lobe
 ///     integral of c(w) cos / pi = (1 - A_mean) / sqrt(1 - A_mean) = sqrt(1 - A_mean), and
 ///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
 /// the Lambert lobe receives the light that f_S does not reflect, and D and S together return A + rho (1 - A) <= 1 in

@@ -94,8 +94,8 @@ struct Arrival {
   bool bent() const { return !flat && dot(normal, normal_geometric) < kBent; }
 
   /// An event S by the geometric normal. It counts only for directions from which a camera uses the geometric normal,
-  /// because the shading normal faces away from them (SeenSide). Black for other directions, and if D was drawn. These
-  /// events come in addition to those by the shading normal.
+  /// because the shading normal faces away from them (SeenSide). The weight is black for other directions, and if D was
+  /// drawn. These events come in addition to those by the shading normal.
   Bsdf::Sample scatter_by_geometric_normal(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
     Bsdf::Sample next = bsdf.in_frame(
@@ -108,8 +108,8 @@ struct Arrival {
   }
 
   /// An event S for light from the image of wi (ShadingFrame): the adjoint of a camera path's event whose direction is
-  /// mirrored in the plane of the triangle. Black if wi has no image in a lobe, or if D was drawn. These events come in
-  /// addition to those by the shading normal.
+  /// mirrored in the plane of the triangle. The weight is black if wi has no image in a lobe, or if D was drawn. These
+  /// events come in addition to those by the shading normal.
   Bsdf::Sample scatter_by_image(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     Bsdf::Sample next;
     const float geometric = dot(wi, normal_geometric);

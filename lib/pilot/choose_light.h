@@ -28,15 +28,15 @@ struct Order {
 /// A way to light, with its estimated work and error.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;        ///< visible caustic light comes from photons; else camera paths find it
-  int rays = 0;            ///< gather rays per record
-  double work = 0;         ///< shadow rays, for the whole picture and its share of the light
-  double error = 0;        ///< squared error in the unit of SampleEffort, summed over boxes of 1, 5, 15 pixels (Seen)
-  double pixel_error = 1;  ///< factor for the wish's pixel error
-  std::uint64_t photons = 0;                     ///< light paths of the photon map
-  bool measured = true;                          ///< false: work and error are lower bounds
-  double never = 0;                              ///< MissedLight::never of the layers that the way samples
-  double uncertain = 0;                          ///< MissedLight::uncertain of these layers
+  bool map = false;           ///< visible caustic light comes from photons; else camera paths find it
+  int rays = 0;               ///< gather rays per record
+  double work = 0;            ///< shadow rays, for the whole picture and its share of the light
+  double error = 0;           ///< seen squared error (Seen), in the unit of SampleEffort
+  double pixel_error = 1;     ///< factor for the wish's pixel error
+  std::uint64_t photons = 0;  ///< light paths of the photon map
+  bool measured = true;       ///< false: work and error are lower bounds
+  double never = 0;           ///< MissedLight::never of the layers that the way samples
+  double uncertain = 0;       ///< MissedLight::uncertain of these layers
   double score() const { return work * error; }  ///< the least is best
 };
 

@@ -85,8 +85,7 @@ Samples samples_of(const RenderScene& scene, const CameraView& view, const Known
 
 /// Work of one sample, in shadow rays.
 double work_of(const RayCounts& counts, const Samples& samples) {
-  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) +
-          Work::kRay * double(counts.points_read)) /
+  return (Work::kRay * double(counts.camera + counts.bounce + counts.points_read) + double(counts.shadow)) /
          (kSamples * double(samples.size()));
 }
 
@@ -167,6 +166,7 @@ std::vector<double> lone_variances(const RenderScene& scene, const Lights& aimed
                                    double times) {
   if (!(caustics.mean > 0) || scene.frame().lights.empty()) return {};
   const double cut = times * levels.white;
+  // The rough frame's own photons have no directions: with directions their flux has another meaning (PhotonView).
   const formats::PhotonBlock photons =
       pilot_photons(scene.tracer, aimed, "caustic", kPilotPaths, options.seed ^ 0x6c6f6e65ull, true);
   std::vector<double> lone = lone_light(scene, view, photons, cut);
@@ -180,13 +180,14 @@ std::vector<double> lone_variances(const RenderScene& scene, const Lights& aimed
 /// lone: lone_variances().
 SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work,
                        const std::vector<double>& lone) {
-  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
-  const auto with_lone = [&](const PartOfLight& part, const PartOfLight& without_caustic) {
-    std::vector<double> found = variances(samples, levels, times, part);
-    const std::vector<double> rest = variances(samples, levels, times, without_caustic);
-    for (std::size_t i = 0; i < lone.size(); ++i) found[i] = std::max(found[i], rest[i] + lone[i]);
+  const auto of = [&](const PartOfLight& part) { return variances(samples, levels, times, part); };
+  // At least the variance of the other light and of the lone samples.
+  const auto with_lone = [&](std::vector<double> found, const std::vector<double>& without_caustic) {
+    for (std::size_t i = 0; i < lone.size(); ++i) found[i] = std::max(found[i], without_caustic[i] + lone[i]);
     return adaptive(found);
   };
+  const std::vector<double> without_caustic = of([](const Sample&s) { return s.other + s.indirect; }),
+                            other = of([](const Sample&s) { return s.other; });
   const auto lost = [&](double Sample::*layer) {
     double above = 0;
     for (std::array<Sample, kSamples> some : samples) {
@@ -195,14 +196,13 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
     }
     return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
-  return {
-      .work = work,
-      .all = with_lone([](const Sample& s) { return s.sum(); }, [](const Sample& s) { return s.other + s.indirect; }),
-      .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
-      .other = with_lone([](const Sample& s) { return s.other + s.caustic; }, [](const Sample& s) { return s.other; }),
-      .other_without_caustic = of([](const Sample& s) { return s.other; }),
-      .missed_caustic = {.lone = lost(&Sample::caustic)},
-      .missed_indirect = {.lone = lost(&Sample::indirect)}};
+  return {.work = work,
+          .all = with_lone(of([](const Sample& s) { return s.sum(); }), without_caustic),
+          .without_caustic = adaptive(without_caustic),
+          .other = with_lone(of([](const Sample& s) { return s.other + s.caustic; }), other),
+          .other_without_caustic = adaptive(other),
+          .missed_caustic = {.lone = lost(&Sample::caustic)},
+          .missed_indirect = {.lone = lost(&Sample::indirect)}};
 }
 
 /// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they
@@ -415,7 +415,7 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.gather.without_caustic = rough.path.other_without_caustic;
   rough.gather.missed_caustic.lone = 0;
   rough.gather.missed_indirect = {};
-  rough.record_sample = rough.gather.work + 1 * seen;
+  rough.record_sample = rough.gather.work + seen;
 }
 
 /// Sets the values of `rough` that concern gathering.
@@ -429,12 +429,11 @@ void measure_gathering(const Picture& picture, const RoughLight& light, const st
   const double lone = rough.gather.missed_caustic.lone;
   rough.gather.missed_caustic = rough.path.missed_caustic;  // camera paths find caustic light
   rough.gather.missed_caustic.lone = lone;
-  // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
-  // needs this ray, which ends at its first hit.
+  // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up, which is a unit
+  // of work, and one ray. MIS needs this ray, which ends at its first hit.
   const double onward_shadow = double(counts.onward) - 2 * double(counts.onward_bounce),
-               onward =
-                   Work::kRay * double(counts.onward_bounce) + onward_shadow + Work::kRay * double(counts.points_read);
-  const double at_records = (Work::kRay + 1) * double(counts.gathered) - onward;
+               onward = Work::kRay * double(counts.onward_bounce + counts.points_read) + onward_shadow,
+               at_records = (Work::kRay + 1) * double(counts.gathered) - onward;
   rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }
 

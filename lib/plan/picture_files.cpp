@@ -13,8 +13,8 @@ namespace {
 /// The audit traces this share of the frame's rays. With its look-ups an audit takes less than 3 % of a run.
 constexpr const char* kAudit = "--audit 0.02";
 
-/// The frame of METHOD=still that gives the pixels that stay has this many times less pixel error: 3.4 times the
-/// samples. Every frame shows its noise, so the noise must not be seen (docs/methods/still.md).
+/// The pixel error of the frame that gives the pixels that stay, over that of other frames: 3.4 times the samples.
+/// Every frame shows its noise, so the noise must not be seen (docs/methods/still.md).
 constexpr double kFinerStill = 0.25;
 
 /// The options of a frame's pixels, with `finer` times the pixel error.

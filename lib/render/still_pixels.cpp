@@ -13,22 +13,17 @@
 namespace tempolux {
 namespace {
 
-PathParts difference(const PathParts& now, const PathParts& before) {
-  PathParts result;
-  for (Layers PathParts::*part : {&PathParts::own, &PathParts::lit, &PathParts::onward}) {
-    Layers& to = result.*part;
-    for (std::size_t l = 0; l < kLayerCount; ++l) to.value[l] = (now.*part).value[l] - (before.*part).value[l];
-    to.coverage = (now.*part).coverage - (before.*part).coverage;
-    to.mirrored = (now.*part).mirrored - (before.*part).mirrored;
-  }
-  return result;
-}
-
 /// Adds `light` times `factor`.
 void add(const Layers& light, float factor, Layers& to) {
   for (std::size_t l = 0; l < kLayerCount; ++l) to.value[l] += light.value[l] * factor;
   to.coverage += light.coverage * factor;
   to.mirrored += light.mirrored * factor;
+}
+
+PathParts difference(PathParts now, const PathParts& before) {
+  for (Layers PathParts::*part : {&PathParts::own, &PathParts::lit, &PathParts::onward})
+    add(before.*part, -1, now.*part);
+  return now;
 }
 
 /// First samples of a pixel at both moments.
@@ -66,14 +61,15 @@ struct Lone {
   double size = 0;  ///< |radiance| of the excess
 };
 
-Lone lone_of(const std::vector<Layers>& change) {
-  Layers sum;
-  for (const Layers& one : change) add(one, 1, sum);
+/// change: of each sample, as FirstSamples has it. sum: over the samples.
+Lone lone_of(const std::vector<Layers>& change, const Layers& sum) {
   Lone lone;
+  if (change.size() < 2) return lone;
+  const float others = 1 / float(change.size() - 1);
   for (const Layers& one : change) {
-    Layers excess = one;
-    if (change.size() > 1)
-      add(one, 1 / float(change.size() - 1), excess), add(sum, -1 / float(change.size() - 1), excess);
+    Layers excess = one;  // minus the mean of the others, (sum - one) / (n - 1)
+    add(one, others, excess);
+    add(sum, -others, excess);
     if (const double size = std::abs(radiance_of(excess)); size > lone.size) lone = {excess, size};
   }
   return lone;
@@ -91,39 +87,40 @@ class Comparison {
     still.anew.assign(std::size_t(width_) * std::size_t(height_), 1);
     still.change.resize(still.anew.size());
     lone_.resize(still.anew.size());
-    std::vector<double> level(still.anew.size());
+    level_.resize(still.anew.size());
     const PartCounts first = noise_.first();
     for_each_pixel(now.view, {}, still.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
       const FirstSamples samples = first_samples(now, before, {pixel, x, y, {}, first}, counts);
-      level[pixel] = samples.now / first.own;
+      level_[pixel] = samples.now / first.own;
       noise_.note(pixel, samples.half[0], samples.half[1], samples.onward);
-      noise_.set_level(pixel, level[pixel]);
+      noise_.set_level(pixel, level_[pixel]);
       for (const Layers& one : samples.change) add(one, 1, still_.change[pixel]);
-      lone_[pixel] = lone_of(samples.change);
+      lone_[pixel] = lone_of(samples.change, still_.change[pixel]);
     });
     noise_.all_noted();
     parallel_each(still.anew.size(), 1024, [&](std::size_t pixel) {
       still_.anew[pixel] = more(noise_.wanted_at(x_of(pixel), y_of(pixel), 1), first);
     });
-    for (std::size_t pixel = 0; pixel < level.size(); ++pixel) error_.push_back(noise_.error_at(level[pixel]));
   }
 
   /// Spreads the excess of lone samples.
   void treat_lone_samples() {
     for (std::size_t pixel = 0; pixel < lone_.size(); ++pixel)
-      if (!still_.anew[pixel] && lone_[pixel].size > error_[pixel]) spread_from(pixel);
+      if (!still_.anew[pixel] && lone_[pixel].size > error_at(pixel)) spread_from(pixel);
   }
 
  private:
   int x_of(std::size_t pixel) const { return int(pixel % std::size_t(width_)); }
   int y_of(std::size_t pixel) const { return int(pixel / std::size_t(width_)); }
+  /// The error that a pixel may have [W/m^2/sr].
+  double error_at(std::size_t pixel) const { return noise_.error_at(level_[pixel]); }
 
   /// Spreads the excess of a pixel evenly over it and the kept pixels around, so widely that none gets more than it may
   /// err, and at most as far as its samples are noticed.
   void spread_from(std::size_t pixel) {
     const Lone& lone = lone_[pixel];
     std::vector<std::size_t> to;
-    for (int reach = 1; reach <= PixelNoise::kWide && lone.size > error_[pixel] * double(to.size()); ++reach) {
+    for (int reach = 1; reach <= PixelNoise::kWide && lone.size > error_at(pixel) * double(to.size()); ++reach) {
       to.assign(1, pixel);
       for_each_around(width_, height_, x_of(pixel), y_of(pixel), reach, [&](std::size_t near, int, int) {
         if (!still_.anew[near]) to.push_back(near);
@@ -137,7 +134,7 @@ class Comparison {
   PixelNoise noise_;
   StillPixels& still_;
   std::vector<Lone> lone_;
-  std::vector<double> error_;  ///< that a pixel may have
+  std::vector<double> level_;  ///< by pixel: radiance now, mean of the channels [W/m^2/sr]
 };
 
 }  // namespace

@@ -9,24 +9,26 @@
 
 namespace tempolux {
 
-/// A frame that another frame of the same camera gives most pixels to.
+/// The pixels of a frame that are kept from a moment before, and how much they change.
 struct StillPixels {
-  std::vector<std::uint8_t> anew;  ///< by pixel: 1 if the pixel must be sampled anew
-  /// By pixel that need not: radiance now minus radiance before [W/m^2/sr], by layer.
-  std::vector<Layers> change;
+  std::vector<std::uint8_t> anew;  ///< by pixel: 1 if the pixel must be sampled anew, 0 if it is kept
+  std::vector<Layers> change;      ///< by pixel, of kept pixels: radiance now minus radiance before [W/m^2/sr]
   RayCounts rays;
-  double share_anew() const;  ///< of the pixels
+  double share_anew() const;  ///< share of the pixels that must be sampled anew
 };
 
 /// Compares the first samples of a frame with samples of a moment before, taken with the same random numbers. Where
 /// nothing that a sample meets has changed, both samples are equal, and their difference has no noise. So
 ///     radiance now = radiance before + mean of the differences
-/// has no bias, and little noise where little changes. A pixel is sampled anew if its differences would need further
-/// samples for the frame's pixel error, by the noise of its neighbours' differences (PixelNoise): this adds no bias.
-/// If the difference of one sample alone moves a kept pixel by more than it may err, the excess is spread evenly over
-/// the kept pixels around, so the sum over pixels stays the same.
-/// Both samplers have the same view, seed and guide to the sky; `options`: those of the frame. Same result for any
-/// number of threads.
+/// has no bias, and little noise where little changes.
+///
+/// PixelNoise estimates from the differences of neighbours how many samples a pixel's differences need for the frame's
+/// pixel error. If the first samples do not suffice, the pixel is sampled anew. This choice adds no bias. If the
+/// difference of one sample alone moves a kept pixel by more than the pixel may err, the excess is spread evenly over
+/// the kept pixels around; the sum over pixels stays the same.
+///
+/// The samplers must have the same view, the same seed and the same guide to the sky. The options are those of the
+/// frame. The result does not depend on the number of threads.
 StillPixels still_pixels(const CameraSampler& now, const CameraSampler& before, const FrameOptions& options);
 
 /// Adds the change to the pixels that are not sampled anew: to the layers that `image` has, and to R G B A. R G B are

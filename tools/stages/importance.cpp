@@ -1,6 +1,6 @@
 #include "tools/stages/importance.h"
 
-#include "lib/plan/decide.h"
+#include "lib/plan/view_of.h"
 
 namespace tempolux::tools {
 

@@ -16,10 +16,8 @@
 #include "lib/render/shutter.h"
 #include "lib/render/still_pixels.h"
 #include "lib/pilot/hidden_light.h"
-#include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
 #include "lib/scene/light_units.h"
-#include "lib/trace/solid_around.h"
 #include "tools/stages/base_frame.h"
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
@@ -103,8 +101,7 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
 ///   in mirrors and glass (SpecularHits).
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
 /// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane or plate:
-/// photons,
-///   because no camera path meets a sun via a smooth surface.
+///   photons, because no camera path meets a sun via a smooth surface.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Shot& shot, bool& unbiased) {
@@ -200,12 +197,21 @@ std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& opt
   return shutter;
 }
 
+/// Decides which pixels keep those of the other moment. All others become the mask of `options`.
+StillPixels keep_pixels(Tool& tool, const LitFrame& now, const StillMoment& before, FrameOptions& options) {
+  StillPixels still = still_pixels(now.sampler(options.seed), before.moment().sampler(options.seed), options);
+  options.mask = still.anew;
+  tool.stats().set("sampled_anew", still.share_anew());
+  return still;
+}
+
 void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& tree) {
   FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number);
   const int camera = input.scene().camera_node(tool.common().camera);
-  const CameraView view(frame, camera, options.width, options.height);
+  LitFrame lit(input, number, camera, options.width, options.height);
+  const SceneFrame& frame = lit.frame();
+  const CameraView& view = lit.view();
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
   FrameOptions frame_options = options_of(tool, options, number);
   BaseFrame base;
@@ -215,38 +221,32 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
     frame_options.mask = base.mask;
   }
   tool.stats().phase("build");
-  const Tracer tracer(frame, tree);
-  Lights lights(frame, input.emission(frame.frame));
   const bool is_reference = options.integrator == "path";
-  const SolidAround around(tracer);
-  const RenderScene scene{tracer, lights, !is_reference && lights.has_suns(), Inside(around(view.eye(), {}, 0))};
-  std::optional<StillMoment> moment;
+  lit.build(input, tree, is_reference);
+  const RenderScene& scene = lit.scene();
+  std::optional<StillMoment> before;
   if (!options.still.frame.empty()) {
     tool.stats().phase("still moment");
-    moment.emplace(tool, input, options.still, view, frame_options.seed);
+    before.emplace(tool, input, options.still, view, frame_options.seed);
+    lit.guide_sky(before->moment().lights().guide());  // both moments must draw the same directions
+  } else if (!is_reference) {
+    lit.guide_sky();
   }
-  if (moment) lights = lights.guided(moment->guide());
-  else if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
-  const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
+  lit.read_light(tool, options.light, tool.common().seed_for_frame(number));
 
   const std::unique_ptr<const Shutter> shutter =
       open_shutter(tool, options, {input.scene(), input.time(), camera, scene, view});
   frame_options.shutter = shutter.get();
   tool.stats().phase("render", true);
-  if (!is_reference) frame_options.known = &light.get();
+  if (!is_reference) frame_options.known = &lit.light().get();
   Image image{options.width, options.height, {}, {}, {}, {}};
   std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
   if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
   StillPixels still;
-  if (moment) {
-    still = still_pixels({scene, view, frame_options.known, frame_options.seed, nullptr},
-                         moment->sampler(frame_options.seed), frame_options);
-    frame_options.mask = still.anew;
-    tool.stats().set("sampled_anew", still.share_anew());
-  }
+  if (before) still = keep_pixels(tool, lit, *before, frame_options);
   RenderedFrame rendered = render_frame(scene, view, frame_options);
+  if (before) add_noise_of_kept(before->image(), still.share_anew(), rendered.noise);
 
-  if (moment) add_noise_of_kept(moment->image(), still.share_anew(), rendered.noise);
   const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered, options.light_paths};
   add_light_without_paths(tool, options, shot, rendered);
   if (number == tool.common().frames.front()) warn_of_missing_light(tool, shot);
@@ -262,10 +262,10 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
   if (view.has_lens() || shutter) blur_albedo(scene, view, shutter.get(), image);
   add_seen_channels(scene, view, options.channels, image);
-  add_influence_channels(scene, view, light.get().localised, options.channels, image);
+  add_influence_channels(scene, view, lit.light().get().localised, options.channels, image);
   tool.stats().phase("write");
   const FrameDescription description{identity_of(frame),
-                                     light.history() + tool.history_line(number),
+                                     lit.light().history() + tool.history_line(number),
                                      frame.frame,
                                      input.time().fps,
                                      {view.world_to_camera(), view.world_to_ndc()},
@@ -274,10 +274,10 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                                      options.channels,
                                      options.exr()};
   outputs.write(rendered, image, description,
-                moment ? KeptPixels{still.anew, moment->image(), &still} : KeptPixels{base.mask, base.base});
+                before ? KeptPixels{still.anew, before->image(), &still} : KeptPixels{base.mask, base.base});
   tool.stats().end_phase();
   rendered.rays += still.rays;
-  count_work(tool, rendered, tracer);
+  count_work(tool, rendered, lit.tracer());
   report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
 

@@ -1,16 +1,10 @@
 // tools/stages/still_moment.h -- reads --still: a frame of another moment, and the scene and light of that moment.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <string>
 
 #include "lib/image/image.h"
-#include "lib/render/camera_view.h"
-#include "lib/render/pixel_samples.h"
-#include "lib/trace/trace.h"
-#include "tools/common/scene_input.h"
-#include "tools/stages/indirect_light.h"
+#include "tools/stages/lit_frame.h"
 
 namespace tempolux::tools {
 
@@ -24,25 +18,17 @@ struct StillOptions {
 /// Another moment of the scene, seen by the same camera.
 class StillMoment {
  public:
-  /// `now`: the view of the frame to render. Throws InputError if the file shows another state than the scene at
-  /// options.number, or if its camera is not that of `now`.
+  /// `now`: the frame to render. Throws InputError if the file shows another state than the scene at options.number, if
+  /// its camera is not that of `now`, and for what --still does not know: lens, shutter, media.
   StillMoment(Tool& tool, SceneInput& input, const StillOptions& options, const CameraView& now, std::uint64_t seed);
 
   const Image& image() const { return image_; }
-  const RenderScene& scene() const { return *scene_; }
-  /// The sky as places of this moment see it: both moments must draw the same directions.
-  const std::shared_ptr<const SkyGuide>& guide() const { return lights_->guide(); }
-  CameraSampler sampler(std::uint64_t seed) const { return {*scene_, *view_, &light_->get(), seed, nullptr}; }
+  const LitFrame& moment() const { return moment_; }
 
  private:
-  SceneFrame frame_;
   Image image_;
   StaticTree tree_;
-  std::optional<Tracer> tracer_;
-  std::optional<Lights> lights_;
-  std::optional<CameraView> view_;
-  std::optional<RenderScene> scene_;
-  std::unique_ptr<IndirectLight> light_;
+  LitFrame moment_;
 };
 
 }  // namespace tempolux::tools

@@ -1,0 +1,78 @@
+// lib/plan/frame_pilot.h -- the pilots of one frame: what they measure for the decisions of a segment.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/light/lights.h"
+#include "lib/pilot/choose_light.h"
+#include "lib/pilot/choose_moving.h"
+#include "lib/pilot/choose_preview.h"
+#include "lib/pilot/choose_split.h"
+#include "lib/plan/decisions.h"
+#include "lib/plan/plan.h"
+#include "lib/scene/at_frame.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+/// Gives the pilots access to the scene.
+struct SceneSource {
+  /// The scene at a frame inside the animation; without media if `with_media` is false.
+  std::function<SceneFrame(int frame, bool with_media)> at;
+  std::function<EmissionTable(int frame)> emission;  ///< the emission table of the frame's segment
+  int camera_node = 0;
+};
+
+/// At most 16 of `frames`, evenly spaced: a bound of the time that looking around takes.
+std::vector<int> spread(const std::vector<int>& frames);
+
+/// The result of a rough frame: the ways to light, the best first, and the light paths of a photon map.
+struct Look {
+  std::vector<Way> ways;
+  std::uint64_t paths = 0;
+  /// True if every way with this method was measured.
+  bool knows(IndirectMethod method) const {
+    return std::ranges::all_of(ways, [&](const Way& way) { return way.method != method || way.measured; });
+  }
+};
+
+/// How the pictures of a segment share light (Order::pictures, Order::records).
+struct Sharing {
+  double new_share = 0;  ///< Decisions::new_share
+  double pictures = 1, records = 1;
+  double least_hidden = kAuditLimit;  ///< RoughOptions::least_hidden
+};
+
+/// The pilots of a frame. They look through a pinhole, so that decisions do not depend on the lens.
+class FramePilot {
+ public:
+  /// tree: the pilots of a segment share the tree of its static scene.
+  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree);
+
+  /// Renders a rough frame of `places` places. It ends early once enough(look) is true.
+  Look look(int places, const Sharing& sharing, const std::function<bool(const Look&)>& enough);
+  PreviewPilot preview();
+  double kernel();
+  SplitChoice split();
+  MovingPilot moving();
+  /// Mean share of a picture of the segment that the picture before does not show.
+  double new_share(const PlannedSegment& segment) const;
+
+ private:
+  const Lights& aimed();
+
+  std::string kinds_;
+  const Wish& wish_;
+  SceneFrame frame_;
+  EmissionTable table_;
+  CameraView view_;
+  Tracer tracer_;
+  Lights lights_;
+  std::optional<Lights> aimed_, without_extent_;
+  std::vector<AimSphere> spheres_;
+};
+
+}  // namespace tempolux
