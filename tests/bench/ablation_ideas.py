@@ -17,7 +17,7 @@ class Idea:
 IDEAS = (
     # ---- samples of light
     Idea("suns apart", "a ray to a sun beside that to another light", "frames",
-         (("tools/stages/render_frame.cpp", "!is_reference && lights.has_suns()", "false"),)),
+         (("tools/stages/lit_frame.cpp", "!is_reference && lights_->has_suns()", "false"),)),
     Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",
          (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),

@@ -4,9 +4,9 @@
     python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen]
 
 A room holds eight balls. Each has a base of random colour, metal or not, and by chance a clearcoat, a sheen and an
-anisotropy of random strength and roughness, and a normal map of the base or of the coat. By object and layer the means
-of the runs of both ways are compared; a difference above 1 % of the object's light plus 3 standard errors is reported,
-and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
+anisotropy of random strength and roughness, and a normal map of the base or of the coat. The means of
+the runs of both ways are compared for each object and layer; a difference above 1 % of the object's light plus 3
+standard errors is reported, and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
 
 A standard error from few runs is itself uncertain. With 2 runs and 16 samples of the path tracer (--spp) 2 of 65 means
 lay beyond the limit (indirect light 5 to 7 % high); with 3 runs and 256 samples 0 of 130; one frame of 512 samples

@@ -40,6 +40,19 @@ def worst_first(row):
     return ORDER[row["met"]], row.get("worth") if row.get("worth") is not None else 1
 
 
+def changes_of_chains(what):
+    """A line of a list for each chain, from canaries.differences()."""
+    chains = {}
+    for change in what:
+        chain, _, words = change.partition(": ")
+        chains.setdefault(chain, []).append(words)
+    for chain, changes in chains.items():
+        files = [words.removesuffix(" differ") for words in changes if words.endswith(" differ")]
+        other = [words for words in changes if not words.endswith(" differ")]
+        made = [f"it makes other files ({', '.join(files)})"] if files else []
+        yield f"- chain `{chain}`: {'; '.join(made + other)}\n"
+
+
 def page_of(row):
     """docs/results/NAME.md"""
     text = (f"# {row['title']}\n\n`{row['command']}` · {row['machine']} · load {row['load']} · {row['date']}\n\n"
@@ -47,7 +60,9 @@ def page_of(row):
     if row.get("paper"):
         text += f"The paper reports: {row['paper']}.\n\n"
     if row.get("stale"):
-        text += f"This page is stale since commit {row['stale']['since']}: {'; '.join(row['stale']['what'])}.\n\n"
+        text += (f"This page is stale: the tree has changed since it was measured, first at commit {row['stale']['since']}. "
+                 f"Small chains stand for this measurement (canaries.py). They show what is different today:\n\n"
+                 f"{''.join(changes_of_chains(row['stale']['what']))}\n")
     return text + table(row["header"], row["rows"]) + "".join(f"\n{note}\n" for note in row["notes"])
 
 

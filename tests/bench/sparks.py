@@ -3,10 +3,11 @@
 
     python3 -B tests/bench/sparks.py BIN SCENE FRAMES.. [--options '--environment m.hdr'] [--samples 1024]
 
-FRAMES: NNNN.exr with layers, as CHANNELS=RGBA,layers makes them; the name is the number of the frame. A spark is a pixel above 2.5 times
-the median of its 7x7 that is not so in a reference, more than this median above the reference, and above a tenth of the picture's mean.
-Path samples of BIN/frame-render are the reference, in the 7x7 around the pixels in question. Prints for each frame the number of sparks, that of each layer that makes them,
-and the largest one in medians.
+FRAMES: NNNN.exr with layers, as CHANNELS=RGBA,layers makes them; the name is the number of the frame. A spark is a
+pixel above 2.5 times the median of its 7x7, if the reference shows no such pixel there: it must also exceed the
+reference by this median, and a tenth of the picture's mean. Path samples of BIN/frame-render are the reference, in the
+7x7 around the pixels in question. Prints for each frame the number of sparks, the layers that make them, and the
+largest spark in medians.
 """
 
 import argparse
@@ -59,9 +60,10 @@ def reference(program, scene, path, options, samples, image, places):
         for p in places:
             wanted[p] = 1
         exr.write(mask, image.width, image.height, {"mask": wanted})
-        subprocess.run([program, scene, "--frame", str(int(path.stem)), "--integrator", "path", "--spp", str(samples), "--size",
-                        f"{image.width}x{image.height}", "--mask", mask, "--base", path, "--channels", "RGBA", "--compression", "none", "--quiet", "-o", picture, *options],
-                       check=True, stdout=subprocess.DEVNULL)
+        size = f"{image.width}x{image.height}"
+        words = ["--frame", str(int(path.stem)), "--size", size, "--integrator", "path", "--spp", str(samples),
+                 "--mask", mask, "--base", path, "--channels", "RGBA", "--compression", "none", "--quiet", *options]
+        subprocess.run([program, scene, *words, "-o", picture], check=True, stdout=subprocess.DEVNULL)
         return pixels.grey(exr.read(picture))
 
 
@@ -79,9 +81,12 @@ def sparks(image, reference_of):
 
 def layer_of(image, at):
     """The layer that stands out most at a place."""
+    places = around(at, image.width, image.height)
+
     def above(layer):
-        grey = [sum(v) / 3 for v in zip(*(plane for plane in pixels.planes(image, layer)))]
-        return grey[at] - median(grey, around(at, image.width, image.height))
+        planes = pixels.planes(image, layer)
+        grey = {p: sum(plane[p] for plane in planes) / 3 for p in places}
+        return grey[at] - median(grey, places)
     return max((name for name in pixels.LAYERS if name + ".R" in image.channels), key=above)
 
 
@@ -96,8 +101,9 @@ def main():
     total = 0
     for path in given.frames:
         image = exr.read(path)
-        found = sparks(image, lambda places: reference(given.bin / "frame-render", given.scene, path, shlex.split(given.options),
-                                                       given.samples, image, places))
+        program, options = given.bin / "frame-render", shlex.split(given.options)
+        found = sparks(image, lambda places: reference(program, given.scene, path, options, given.samples, image,
+                                                       places))
         layers = collections.Counter(layer_of(image, at) for at, _ in found)
         total += len(found)
         print(f"{path.name}: {len(found)} sparks", *(f"{name} {n}" for name, n in layers.items()),

@@ -3,12 +3,14 @@
 
     ways.py [--build build/release] [--out OUT] [--scenes 'S2|S8'] [--size 160x90] [--json FILE] [--judge FILE ...]
 
-Renders one frame of each scene by paths, gathering and records, with two seeds. By way: microseconds of a sample; counts
-of a sample; CPU seconds of the picture with what it alone reads, and of light that the pictures of a segment share;
-noise of the picture, mean squared over boxes of 1, 5 and 15 pixels; CPU seconds times that over the least way's, of the
-picture alone and of one of 24 that share, and the plan's own products over its least. At the end the CPU time of single
-counts (Work in lib/pilot/rough_frame.h): each scene has its own time of a unit, the ratios are those of all scenes.
---judge shows stored rows again.
+Renders one frame of each scene by paths, gathering and records, with two seeds. Prints for each way:
+- microseconds and counts of a sample;
+- CPU seconds of the picture with what it alone reads, and of light that the pictures of a segment share;
+- noise of the picture: root of the mean square over boxes of 1, 5 and 15 pixels;
+- CPU seconds times squared noise over those of the best way, for the picture alone and for one of 24 that share light,
+  and the plan's own products over the least of them.
+At the end it prints the CPU time of single counts (Work in lib/pilot/rough_frame.h). Each scene has its own time of a
+unit; the ratios of the times are those of all scenes. --judge shows stored rows again.
 """
 import argparse
 import json
@@ -52,7 +54,8 @@ def believed(plan):
     """The plan's products of work and squared error by way, whichever source of caustic light is better."""
     text = json.dumps(plan)
     found = {}
-    for way, beside, least, value in re.findall(r"(paths|gather|records)( beside caustics of photons)? (at least )?(\d[\d.]*(?:e[+-]?\d+)?)", text.partition("work x squared error")[2]):
+    product = r"(paths|gather|records)(?: beside caustics of photons)? (?:at least )?(\d[\d.]*(?:e[+-]?\d+)?)"
+    for way, value in re.findall(product, text.partition("work x squared error")[2]):
         found[way] = min(found.get(way, math.inf), float(value))
     return found
 
@@ -65,8 +68,10 @@ def row_of(side, case, way):
     all_stats, plan = pipeline.stats_of(side.folder), pipeline.plan_of(side.folder)
     frame, = (s for s in all_stats if s["tool"] == "frame-render")
     counts, known = frame["counts"], frame["counts"].get("lookups", 0)
-    one_state = "1 state of light" in json.dumps(plan) or not any(f.startswith("stands") for f in pipeline.folders_of(side.folder))
-    folders = [f for f in pipeline.folders_of(side.folder, ("photons", "points", "cache")) if one_state or f.startswith(("stands", "touched"))]
+    light_folders = pipeline.folders_of(side.folder, ("photons", "points", "cache"))
+    of_static = [f for f in light_folders if f.startswith(("stands", "touched"))]
+    one_state = "1 state of light" in json.dumps(plan) or not of_static
+    folders = light_folders if one_state else of_static
     shared = sum(s["cpu_s"] for s in pipeline.stats_in(side.folder, *folders))
     light = []
     for s in all_stats:
@@ -76,12 +81,16 @@ def row_of(side, case, way):
         if c.get("points") and "points_changed" not in c and phase(s, "points") > 0.03:
             light.append({"cpu_s": phase(s, "points"), "points_made": c["points"]})
         if c.get("records") and phase(s, "records") > 0.03:
-            light.append({"cpu_s": phase(s, "records"), "gather_rays": c["gather_rays"], "gather_shadow": c["shadow_rays"], "records_made": c["records"]})
-    return {"scene": case.name, "way": way, "samples": images[0].width * images[0].height * frame["results"]["samples_per_pixel"],
-            "of_frame": {"cpu_s": phase(frame, "render"), "rays": counts["camera_rays"] + counts["bounce_rays"], "shadow": counts["shadow_rays"],
-                         "points_read": counts.get("points_read", 0), "records_read": known if way == "records" else 0,
-                         "caustics_read": known + counts.get("gathered_in_pixels", 0) if "--photons " in frame["command"] else 0},
-            "light": light, "picture": cpu - shared, "shared": shared, "noise2": noise2(*images), "believed": believed(plan)}
+            light.append({"cpu_s": phase(s, "records"), "gather_rays": c["gather_rays"],
+                          "gather_shadow": c["shadow_rays"], "records_made": c["records"]})
+    reads_map = "--photons " in frame["command"]
+    of_frame = {"cpu_s": phase(frame, "render"), "rays": counts["camera_rays"] + counts["bounce_rays"],
+                "shadow": counts["shadow_rays"], "points_read": counts.get("points_read", 0),
+                "records_read": known if way == "records" else 0,
+                "caustics_read": known + counts.get("gathered_in_pixels", 0) if reads_map else 0}
+    samples = images[0].width * images[0].height * frame["results"]["samples_per_pixel"]
+    return {"scene": case.name, "way": way, "samples": samples, "of_frame": of_frame, "light": light,
+            "picture": cpu - shared, "shared": shared, "noise2": noise2(*images), "believed": believed(plan)}
 
 
 def scores(rows):
@@ -100,7 +109,8 @@ def show(rows):
     of_way = scores(rows)
     for r in rows:
         n, f = r["samples"], r["of_frame"]
-        print(f"{r['scene']:19} {r['way']:8} {1e6 * f['cpu_s'] / n:5.1f} us ", " ".join(f"{c} {f[c] / n:4.1f}" for c in OF_FRAMES),
+        counts = " ".join(f"{c} {f[c] / n:4.1f}" for c in OF_FRAMES)
+        print(f"{r['scene']:19} {r['way']:8} {1e6 * f['cpu_s'] / n:5.1f} us ", counts,
               f" {r['picture']:6.1f} + {r['shared']:5.1f} CPU s, noise {math.sqrt(r['noise2']):5.2f};",
               "alone %5.2f many %5.2f plan %5.2f" % of_way[r["way"]], flush=True)
 
@@ -115,7 +125,8 @@ def fit(rows):
         """(sum of absolute and squared differences of logarithms, seconds of a unit by scene)"""
         error, of_scene = [], {}
         for scene, part in parts:
-            error.append((scene, "rays" in part, math.log(part["cpu_s"] / sum(weight[c] * part.get(c, 0) for c in names))))
+            units = sum(weight[c] * part.get(c, 0) for c in names)
+            error.append((scene, "rays" in part, math.log(part["cpu_s"] / units)))
         for scene in {s for s, *_ in error}:
             of_scene[scene] = statistics.fmean(e for s, frame, e in error if s == scene and frame)
         rest = [e - of_scene[s] for s, _, e in error]

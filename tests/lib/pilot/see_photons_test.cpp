@@ -27,18 +27,27 @@ struct Pilots {
   RoughFrame rough;
   std::vector<Way> ways;
 };
-/// A wall 4 m wide at z = 0, of which an orthographic camera sees 3.2 x 1.8 m.
-Pilots pilots_of(test::HandMadeScene& scene) {
+/// A wall 4 m wide at z = 0.
+void add_wall(test::HandMadeScene& scene) {
   scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));
-  const SceneFrame frame = scene.frame();
-  const EmissionTable table = build_emission_table(std::span(&frame, 1));
-  const Tracer tracer(frame);
-  const Lights lights(frame, table);
+}
+/// An orthographic camera that sees 3.2 x 1.8 m of the wall.
+CameraView view_of_wall() {
   PlacedCamera camera;
   camera.camera.kind = Camera::Kind::orthographic;
   camera.camera.ymag_m = 0.9f;
   camera.scene_from_camera.translation = {2, 1.5f, 7};
-  const CameraView view(camera, {}, 64, 36);
+  return CameraView(camera, {}, 64, 36);
+}
+
+/// Pilots of the wall in this scene.
+Pilots pilots_of(test::HandMadeScene& scene) {
+  add_wall(scene);
+  const SceneFrame frame = scene.frame();
+  const EmissionTable table = build_emission_table(std::span(&frame, 1));
+  const Tracer tracer(frame);
+  const Lights lights(frame, table);
+  const CameraView view = view_of_wall();
   const RoughFrame rough =
       rough_frame({tracer, lights}, lights, view,
                   {.kinds = "caustic,indirect", .pixel_error = 0.016, .photons = 100'000, .seen = {}, .seed = 0});
@@ -94,17 +103,12 @@ TEST(SeePhotons, AFewPhotonsProveLightThatPathsDoNotFind) {
 TEST(SeePhotons, ShowLoneSamplesOfPaths) {
   test::HandMadeScene scene;
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
-  scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));
+  add_wall(scene);
   scene.add_quad({-4, 0, 8}, {8, 0, 8}, {8, 0, 0}, {-4, 0, 0}, mirror(0.25f));
-  const SceneFrame& frame = scene.frame();
-  const EmissionTable table = build_emission_table(std::span(&frame, 1));
-  const Tracer tracer(frame);
-  const Lights lights(frame, table);
-  PlacedCamera camera;
-  camera.camera.kind = Camera::Kind::orthographic;
-  camera.camera.ymag_m = 0.9f;
-  camera.scene_from_camera.translation = {2, 1.5f, 7};
-  const CameraView view(camera, {}, 64, 36);
+  const test::Lit lit(scene.frame());
+  const Tracer& tracer = lit.tracer;
+  const Lights& lights = lit.lights;
+  const CameraView view = view_of_wall();
   const formats::PhotonBlock photons = pilot_photons(tracer, lights, "caustic", kPilotPaths, 0, true);
   constexpr std::uint32_t kSamples = 512;
   const std::array<float, 3> cuts{1e-6f, 0.3f, 1};
