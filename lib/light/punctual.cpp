@@ -16,7 +16,32 @@ double one_minus_cos(double angle) {
   return 2 * s * s;
 }
 
+/// Directions around an axis, uniform in the solid angle 2 pi end [sr].
+struct Cone {
+  double end;  ///< 1 - cosine of half the angle; 2: all directions
+
+  /// 1 - cosine of the angle between the axis and the direction that a point of the unit disc stands for.
+  double one_minus_cos(Vec2 disc) const { return end * std::min(1.0, length2(disc)); }
+  /// The direction (unit). A cone so narrow that floats cannot resolve it gives the axis.
+  Vec3 direction(Vec3 axis, Vec2 disc) const {
+    const double omc = one_minus_cos(disc), across = std::sqrt(end * std::max(0.0, 2 - omc));
+    return normalize(
+        Frame(axis).to_world({float(across * double(disc.x)), float(across * double(disc.y)), float(1 - omc)}));
+  }
+
+ private:
+  static double length2(Vec2 v) { return double(v.x) * double(v.x) + double(v.y) * double(v.y); }
+};
+
+/// The disc of directions of a directional light.
+Cone disc_of(const LampSize& size) { return {one_minus_cos(0.5 * double(size.angle_rad))}; }
+
 }  // namespace
+
+float highest_cosine(const LampSize& size, float middle) {
+  const double above = std::acos(std::clamp(double(middle), -1.0, 1.0)) - 0.5 * double(size.angle_rad);
+  return float(std::cos(std::max(0.0, above)));
+}
 
 SpotProfile::SpotProfile(const PunctualLight& light)
     : inner(one_minus_cos(light.inner_cone_rad)), outer(one_minus_cos(light.outer_cone_rad)) {
@@ -45,14 +70,18 @@ Rgbd PunctualSource::flux(const PunctualLight& light, double disc_radius) {
   switch (light.kind) {
     case PunctualLight::Kind::point: return intensity * (4 * kPiD);
     case PunctualLight::Kind::spot: return intensity * SpotProfile(light).solid_angle();
-    case PunctualLight::Kind::directional: return intensity * (kPiD * disc_radius * disc_radius);
+    case PunctualLight::Kind::directional:
+      return intensity * (kPiD * disc_radius * disc_radius / (1 - 0.5 * disc_of(light.size).end));
   }
   return {};
 }
 
 LightBounds PunctualSource::bounds(const Box3&) const {
   LightBounds b;
-  b.box.add(placed.position);
+  const float r = placed.light.size.radius_m;
+  const Vec3 reach{r, r, r};
+  b.box.add(placed.position - reach);
+  b.box.add(placed.position + reach);
   b.axis = placed.direction;
   b.add_punctual(max_component(placed.light.intensity));
   b.cos_spread = -1;
@@ -65,38 +94,79 @@ LightBounds PunctualSource::bounds(const Box3&) const {
   return b;
 }
 
-bool PunctualSource::sample(Vec3 point, double probability, LightSample& s) const {
-  s.delta = true;
+bool PunctualSource::sample(Vec3 point, Vec2 u, double probability, LightSample& s) const {
+  s.only_sampled = true;
+  const LampSize& size = placed.light.size;
   if (placed.light.distant()) {
     s.wi = -placed.direction;
+    double share = 1;
+    if (size.angle_rad > 0) [[unlikely]] {
+      const Cone disc = disc_of(size);
+      s.wi = disc.direction(s.wi, sample_disc_concentric(u));
+      share = 1 - 0.5 * disc.end;
+    }
     s.position = point + s.wi * aim.distance_beyond();
-    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / probability);
+    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / (share * probability));
     s.distant = true;
     return true;
   }
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
-  const double distance = length(to);
-  if (!(distance > 0)) return false;
+  double distance = length(to), gain = 1;
+  Vec3d wi = to / distance;
+  if (size.radius_m > 0) [[unlikely]] {
+    gain = sample_sphere(point, to, u, s);
+    wi = Vec3d(s.wi);
+    distance = std::max(distance, double(size.radius_m));
+  } else {
+    if (!(distance > 0)) return false;
+    s.wi = Vec3(wi);
+    s.position = placed.position;
+  }
   // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
   const double nearest = std::max(distance, 1e-6 * aim.scene_radius());
-  s.wi = Vec3(to / distance);
-  s.position = placed.position;
   double falloff = 1;
   if (placed.light.kind == PunctualLight::Kind::spot)
-    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
-  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + wi));
+  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (gain * falloff / (nearest * nearest * probability)));
   return falloff > 0;
 }
 
+/// Draws the direction to a sphere, and the place where it meets the sphere. Returns the facing irradiance as a
+/// multiple of I / max(d, r)^2: 2 / (1 + cos) outside, which needs no division by r; 4 inside.
+double PunctualSource::sample_sphere(Vec3 point, Vec3d to, Vec2 u, LightSample& s) const {
+  const double r = double(placed.light.size.radius_m), distance = length(to);
+  const Vec2 disc = sample_disc_concentric(u);
+  const bool outside = distance > r;
+  const double sine2 = outside ? r / distance * (r / distance) : 1, cosine = std::sqrt(1 - sine2);
+  const Cone cone{outside ? sine2 / (1 + cosine) : 2};
+  s.wi = cone.direction(distance > 0 ? Vec3(to / distance) : Vec3{0, 0, 1}, disc);
+  const double omc = cone.one_minus_cos(disc), along = distance * (1 - omc),
+               half_chord = std::sqrt(std::max(0.0, r * r - distance * distance * omc * (2 - omc)));
+  s.position = Vec3(Vec3d(point) + Vec3d(s.wi) * (outside ? along - half_chord : along + half_chord));
+  return outside ? 2 / (1 + cosine) : 4;
+}
+
 void PunctualSource::emit(double u0, const std::array<double, 4>& u, double, PhotonEmission& e) const {
+  const LampSize& size = placed.light.size;
+  const auto disc = [&] {
+    const auto below_one = [](double x) { return std::min(float(x), kOneMinusEpsilon); };
+    return sample_disc_concentric({below_one(u[2]), below_one(u[3])});
+  };
   if (placed.light.distant()) {
     e.travel = placed.direction;
+    if (size.angle_rad > 0) [[unlikely]]
+      e.travel = disc_of(size).direction(e.travel, disc());
     start_distant(aim, u0, u[1], Rgbd(e.flux), e);
     return;
   }
-  // A point light has no extent, so the first two numbers give the direction.
   e.origin = placed.position;
   e.travel = sample_punctual_direction(placed, u0, u[1]);
+  if (size.radius_m > 0) [[unlikely]] {
+    const Vec2 d = disc();
+    const float height = std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
+    e.normal = normalize(Frame(e.travel).to_world({d.x, d.y, height}));
+    e.origin = Vec3(Vec3d(placed.position) + Vec3d(e.normal) * double(size.radius_m));
+  }
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {
