@@ -12,13 +12,11 @@
 namespace tempolux {
 namespace {
 
-/// Weight with which a directional light is chosen: its irradiance, or with a size the irradiance as if the highest
-/// point of its disc were its middle. 0 if all of the light is below the surface.
+/// Weight with which a directional light is chosen: its irradiance, with the cosine for the highest point of its disc,
+/// which the sum cos t + a bounds. 0 if the light is below the surface.
 double sun_weight(const PlacedLight& placed, Vec3 normal) {
   const double e = max_component(placed.light.intensity);
-  if (normal == Vec3{}) return e;
-  const float middle = -dot(normal, placed.direction);
-  return e * std::max(0.0f, placed.light.size.angle_rad > 0 ? highest_cosine(placed.light.size, middle) : middle);
+  return normal == Vec3{} ? e : e * std::max(0.0f, 0.5f * placed.light.size.angle_rad - dot(normal, placed.direction));
 }
 
 /// Probability of choosing a distant light. `distant` and `others` are irradiances from both kinds of light, the second
@@ -73,8 +71,8 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, float u_disc, double 
     left -= w;
   }
   if (!chosen) return false;
-  const float u_left = to_float(stretch(left, 0, weight));
-  return PunctualSource{*chosen, aim_}.sample(point, {u_left, u_disc}, probability * weight / total, s);
+  const Vec2 u_direction = chosen->light.has_size() ? Vec2{to_float(stretch(left, 0, weight)), u_disc} : Vec2{};
+  return PunctualSource{*chosen, aim_}.sample(point, u_direction, probability * weight / total, s);
 }
 
 /// Draws a point on the light of a slot that was chosen with this probability. `left` is the remainder of the number

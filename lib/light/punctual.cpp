@@ -38,11 +38,6 @@ Cone disc_of(const LampSize& size) { return {one_minus_cos(0.5 * double(size.ang
 
 }  // namespace
 
-float highest_cosine(const LampSize& size, float middle) {
-  const double above = std::acos(std::clamp(double(middle), -1.0, 1.0)) - 0.5 * double(size.angle_rad);
-  return float(std::cos(std::max(0.0, above)));
-}
-
 SpotProfile::SpotProfile(const PunctualLight& light)
     : inner(one_minus_cos(light.inner_cone_rad)), outer(one_minus_cos(light.outer_cone_rad)) {
   inner = std::min(inner, outer);
@@ -96,77 +91,81 @@ LightBounds PunctualSource::bounds(const Box3&) const {
 
 bool PunctualSource::sample(Vec3 point, Vec2 u, double probability, LightSample& s) const {
   s.only_sampled = true;
-  const LampSize& size = placed.light.size;
+  if (placed.light.has_size()) [[unlikely]]
+    return sample_sized(point, u, probability, s);
   if (placed.light.distant()) {
     s.wi = -placed.direction;
-    double share = 1;
-    if (size.angle_rad > 0) [[unlikely]] {
-      const Cone disc = disc_of(size);
-      s.wi = disc.direction(s.wi, sample_disc_concentric(u));
-      share = 1 - 0.5 * disc.end;
-    }
     s.position = point + s.wi * aim.distance_beyond();
-    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / (share * probability));
+    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / probability);
     s.distant = true;
     return true;
   }
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
-  double distance = length(to), gain = 1;
-  Vec3d wi = to / distance;
-  if (size.radius_m > 0) [[unlikely]] {
-    gain = sample_sphere(point, to, u, s);
-    wi = Vec3d(s.wi);
-    distance = std::max(distance, double(size.radius_m));
-  } else {
-    if (!(distance > 0)) return false;
-    s.wi = Vec3(wi);
-    s.position = placed.position;
-  }
-  // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
-  const double nearest = std::max(distance, 1e-6 * aim.scene_radius());
+  const double distance = length(to);
+  if (!(distance > 0)) return false;
+  const double nearest = std::max(distance, aim.least_distance());
+  s.wi = Vec3(to / distance);
+  s.position = placed.position;
   double falloff = 1;
   if (placed.light.kind == PunctualLight::Kind::spot)
-    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + wi));
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
+  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+  return falloff > 0;
+}
+
+/// sample() of a light with a size. No formula has a difference of nearly equal numbers or divides by a small size.
+bool PunctualSource::sample_sized(Vec3 point, Vec2 u, double probability, LightSample& s) const {
+  const Vec2 disc = sample_disc_concentric(u);
+  if (placed.light.distant()) {
+    const Cone sun = disc_of(placed.light.size);
+    s.wi = sun.direction(-placed.direction, disc);
+    s.position = point + s.wi * aim.distance_beyond();
+    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / ((1 - 0.5 * sun.end) * probability));
+    s.distant = true;
+    return true;
+  }
+  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
+  const double distance = length(to), r = double(placed.light.size.radius_m);
+  const bool outside = distance > r;
+  const double sine2 = outside ? r / distance * (r / distance) : 1, cosine = std::sqrt(1 - sine2);
+  const Cone cone{outside ? sine2 / (1 + cosine) : 2};
+  s.wi = cone.direction(distance > 0 ? Vec3(to / distance) : placed.direction, disc);
+  const double omc = cone.one_minus_cos(disc), along = distance * (1 - omc),
+               half_chord = std::sqrt(std::max(0.0, r * r - distance * distance * omc * (2 - omc)));
+  s.position = Vec3(Vec3d(point) + Vec3d(s.wi) * (outside ? along - half_chord : along + half_chord));
+  double falloff = 1;
+  if (placed.light.kind == PunctualLight::Kind::spot)
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + Vec3d(s.wi)));
+  const double nearest = std::max({distance, r, aim.least_distance()}), gain = outside ? 2 / (1 + cosine) : 4;
   s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (gain * falloff / (nearest * nearest * probability)));
   return falloff > 0;
 }
 
-/// Draws the direction to a sphere, and the place where it meets the sphere. Returns the facing irradiance as a
-/// multiple of I / max(d, r)^2: 2 / (1 + cos) outside, which needs no division by r; 4 inside.
-double PunctualSource::sample_sphere(Vec3 point, Vec3d to, Vec2 u, LightSample& s) const {
-  const double r = double(placed.light.size.radius_m), distance = length(to);
-  const Vec2 disc = sample_disc_concentric(u);
-  const bool outside = distance > r;
-  const double sine2 = outside ? r / distance * (r / distance) : 1, cosine = std::sqrt(1 - sine2);
-  const Cone cone{outside ? sine2 / (1 + cosine) : 2};
-  s.wi = cone.direction(distance > 0 ? Vec3(to / distance) : Vec3{0, 0, 1}, disc);
-  const double omc = cone.one_minus_cos(disc), along = distance * (1 - omc),
-               half_chord = std::sqrt(std::max(0.0, r * r - distance * distance * omc * (2 - omc)));
-  s.position = Vec3(Vec3d(point) + Vec3d(s.wi) * (outside ? along - half_chord : along + half_chord));
-  return outside ? 2 / (1 + cosine) : 4;
-}
-
 void PunctualSource::emit(double u0, const std::array<double, 4>& u, double, PhotonEmission& e) const {
-  const LampSize& size = placed.light.size;
-  const auto disc = [&] {
-    const auto below_one = [](double x) { return std::min(float(x), kOneMinusEpsilon); };
-    return sample_disc_concentric({below_one(u[2]), below_one(u[3])});
-  };
+  if (placed.light.has_size()) [[unlikely]]
+    return emit_sized(u0, u, e);
   if (placed.light.distant()) {
     e.travel = placed.direction;
-    if (size.angle_rad > 0) [[unlikely]]
-      e.travel = disc_of(size).direction(e.travel, disc());
     start_distant(aim, u0, u[1], Rgbd(e.flux), e);
     return;
   }
+  // A light without size has one place, so the first two numbers give the direction.
   e.origin = placed.position;
   e.travel = sample_punctual_direction(placed, u0, u[1]);
-  if (size.radius_m > 0) [[unlikely]] {
-    const Vec2 d = disc();
-    const float height = std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
-    e.normal = normalize(Frame(e.travel).to_world({d.x, d.y, height}));
-    e.origin = Vec3(Vec3d(placed.position) + Vec3d(e.normal) * double(size.radius_m));
+}
+
+void PunctualSource::emit_sized(double u0, const std::array<double, 4>& u, PhotonEmission& e) const {
+  const auto below_one = [](double x) { return std::min(float(x), kOneMinusEpsilon); };
+  const Vec2 disc = sample_disc_concentric({below_one(u[2]), below_one(u[3])});
+  if (placed.light.distant()) {
+    e.travel = disc_of(placed.light.size).direction(placed.direction, disc);
+    start_distant(aim, u0, u[1], Rgbd(e.flux), e);
+    return;
   }
+  e.travel = sample_punctual_direction(placed, u0, u[1]);
+  const float height = std::sqrt(std::max(0.0f, 1 - disc.x * disc.x - disc.y * disc.y));
+  e.normal = normalize(Frame(e.travel).to_world({disc.x, disc.y, height}));
+  e.origin = Vec3(Vec3d(placed.position) + Vec3d(e.normal) * double(placed.light.size.radius_m));
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {

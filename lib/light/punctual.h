@@ -36,10 +36,6 @@ struct SpotProfile {
   double sample_one_minus_cos(double u) const;
 };
 
-/// The largest cosine between a surface's normal and a direction of the disc of a directional light. `middle`: cosine
-/// for the middle of the disc.
-float highest_cosine(const LampSize& size, float middle);
-
 /// A point, spot or directional light at a frame, as one of the kinds of lights (light_sample.h). A ray does not meet
 /// it, so it has no pdf_solid_angle().
 struct PunctualSource {
@@ -68,7 +64,8 @@ struct PunctualSource {
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
 
  private:
-  double sample_sphere(Vec3 point, Vec3d to, Vec2 u, LightSample& s) const;
+  [[gnu::noinline]] bool sample_sized(Vec3 point, Vec2 u, double probability, LightSample& s) const;
+  [[gnu::noinline]] void emit_sized(double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
 };
 
 /// Unit direction in which a point or spot light emits a photon, from u1 and u2 in [0, 1). The pdf is in proportion to

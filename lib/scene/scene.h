@@ -240,6 +240,7 @@ struct PunctualLight {
 
   /// True if the light is infinitely far away and has a direction in place of a position.
   bool distant() const { return kind == Kind::directional; }
+  bool has_size() const { return size.radius_m > 0 || size.angle_rad > 0; }
   bool operator==(const PunctualLight&) const = default;
 };
 
