@@ -31,7 +31,10 @@ struct PhotonEmission {
   Vec3 origin{}, travel{};  ///< scene space, m; unit direction of flight
   float origin_offset = 0;  ///< m; the photon starts this far along the emitting side's normal
   Vec3 normal{};            ///< of the emitting side; zero for distant lights and lights without size
-  Rgb flux{0.0f};           ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
+  /// m; above 0 for a lamp that is a sphere, whose far side lies this far behind `origin`. If surfaces lie on this
+  /// chord, the lamp lights them as well, with a second photon of this flux that starts at the far side and ends here.
+  float chord = 0;
+  Rgb flux{0.0f};  ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
   std::uint32_t slot = 0;
 };
 

@@ -166,6 +166,7 @@ void PunctualSource::emit_sized(double u0, const std::array<double, 4>& u, Photo
   const float height = std::sqrt(std::max(0.0f, 1 - disc.x * disc.x - disc.y * disc.y));
   e.normal = normalize(Frame(e.travel).to_world({disc.x, disc.y, height}));
   e.origin = Vec3(Vec3d(placed.position) + Vec3d(e.normal) * double(placed.light.size.radius_m));
+  e.chord = 2 * placed.light.size.radius_m * height;
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {

@@ -60,7 +60,7 @@ struct PunctualSource {
   /// Emits a photon whose flux is set: u0 and u[1] give the direction, or the start of a directional light; u[2] and
   /// u[3] the start on a sphere, or the direction in the disc of a directional light. A photon of a sphere starts
   /// uniformly on the disc that the sphere shows in its direction, so its directions have the pdf cos / pi around the
-  /// sphere's normal. Photons start outwards: they do not light what lies inside the sphere.
+  /// sphere's normal. PhotonEmission::chord lets them light what lies inside of the sphere.
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
 
  private:
