@@ -395,7 +395,7 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
     if (sample_direct(lights_, at, random.get1(1, Purpose::light_choice), u, direct)) add(direct);
     return sum;
   }
-  if (sample_sun(lights_, at, random.get1(1, Purpose::sun), direct)) add(direct);
+  if (sample_sun(lights_, at, random.get2(1, Purpose::sun), direct)) add(direct);
   if (sample_other_than_suns(lights_, at, u, direct)) add(direct);
   return sum;
 }

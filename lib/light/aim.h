@@ -42,6 +42,8 @@ class Aim {
   double disc_area() const { return kPiD * scene_radius_ * scene_radius_; }
   /// m; from any point of the scene sphere this distance reaches its surface.
   float distance_beyond() const { return float(scene_radius_ > 0 ? 2 * scene_radius_ : 1); }
+  /// m; closer to a punctual light its irradiance no longer grows, since it must stay finite.
+  double least_distance() const { return 1e-6 * scene_radius_; }
   bool empty() const { return discs_.empty(); }  ///< true if photons are not aimed
   std::size_t size() const { return given_; }    ///< number of the given spheres
 

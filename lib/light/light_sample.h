@@ -13,14 +13,16 @@ namespace tempolux {
 
 /// A place or direction of a light that was drawn for a point.
 struct LightSample {
-  Vec3 wi{};                  ///< unit, from the point towards the light
-  Vec3 position{};            ///< on the light; outside the scene for directional lights and the environment
+  Vec3 wi{};        ///< unit, from the point towards the light
+  Vec3 position{};  ///< on the light, on its nearer side; outside the scene for directional lights and the environment
   float position_offset = 0;  ///< m; the shadow ray ends this far before `position`
-  /// W/m^2 on a surface that faces wi: radiance / pdf; for a delta light I / (d^2 P) or E / P, where P is the
+  /// W/m^2 on a surface that faces wi: radiance / pdf; for a light without size I / (d^2 P) or E / P, where P is the
   /// probability of choosing the light. Multiplied by f cos it gives reflected radiance.
   Rgb facing_irradiance{0.0f};
-  float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 for a delta light
-  bool delta = false;
+  float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 if `only_sampled`
+  /// True for point, spot and directional lights. No ray meets them, whatever their size: a light sample counts in
+  /// full, without a MIS weight.
+  bool only_sampled = false;
   bool distant = false;  ///< true for the environment and directional lights
 };
 
@@ -28,8 +30,11 @@ struct LightSample {
 struct PhotonEmission {
   Vec3 origin{}, travel{};  ///< scene space, m; unit direction of flight
   float origin_offset = 0;  ///< m; the photon starts this far along the emitting side's normal
-  Vec3 normal{};            ///< of the emitting side; zero for punctual lights
-  Rgb flux{0.0f};           ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
+  Vec3 normal{};            ///< of the emitting side; zero for distant lights and lights without size
+  /// m; above 0 for a lamp that is a sphere, whose far side lies this far behind `origin`. If surfaces lie on this
+  /// chord, the lamp lights them as well, with a second photon of this flux that starts at the far side and ends here.
+  float chord = 0;
+  Rgb flux{0.0f};  ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
   std::uint32_t slot = 0;
 };
 

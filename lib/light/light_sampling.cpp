@@ -12,10 +12,11 @@
 namespace tempolux {
 namespace {
 
-/// Weight with which a directional light is chosen: its irradiance; 0 if the light is below the surface.
+/// Weight with which a directional light is chosen: its irradiance, with the cosine for the highest point of its disc,
+/// which the sum cos t + a bounds. 0 if the light is below the surface.
 double sun_weight(const PlacedLight& placed, Vec3 normal) {
   const double e = max_component(placed.light.intensity);
-  return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
+  return normal == Vec3{} ? e : e * std::max(0.0f, 0.5f * placed.light.size.angle_rad - dot(normal, placed.direction));
 }
 
 /// Probability of choosing a distant light. `distant` and `others` are irradiances from both kinds of light, the second
@@ -50,12 +51,13 @@ bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share,
   const double left = double(u_float.x) / share * total;
   if (left < environment_weight_ || total <= environment_weight_)
     return sky().sample(point, normal, share * environment_weight_ / total, left / environment_weight_, u_float, s);
-  return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_),
+  return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_), u_float.y,
                     share * (1 - environment_weight_ / total), s);
 }
 
-/// u in [0, 1) chooses among the directional lights; `probability` is the probability of choosing any of them.
-bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
+/// u in [0, 1) chooses among the directional lights; `probability` is the probability of choosing any of them. What is
+/// left of u, and u_disc, choose a direction of the light's disc.
+bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, float u_disc, double probability, LightSample& s) const {
   double total = 0, weight = 0;
   for (const std::uint32_t i : suns_) total += sun_weight(frame_->lights[i], normal);
   double left = u * total;
@@ -69,23 +71,26 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, L
     left -= w;
   }
   if (!chosen) return false;
-  return PunctualSource{*chosen, aim_}.sample(point, probability * weight / total, s);
+  const Vec2 u_direction = chosen->light.has_size() ? Vec2{to_float(stretch(left, 0, weight)), u_disc} : Vec2{};
+  return PunctualSource{*chosen, aim_}.sample(point, u_direction, probability * weight / total, s);
 }
 
 /// Draws a point on the light of a slot that was chosen with this probability. `left` is the remainder of the number
 /// that chose the slot; with draw.joint it replaces u.x.
 inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, const Draw& draw,
                                 LightSample& sample) const {
-  if (slot >= triangles_.size())
+  Vec2 u = draw.u;
+  if (slot >= triangles_.size()) {
+    if (draw.joint) u.x = to_float(left);
     return with(slot,
                 [&](const auto& light) {
-                  if constexpr (requires { light.sample(point, probability, sample); })
-                    return light.sample(point, probability, sample);
+                  if constexpr (requires { light.sample(point, u, probability, sample); })
+                    return light.sample(point, u, probability, sample);
                   return false;
                 }) &&
            is_finite(sample.facing_irradiance);
+  }
   const TriangleLight& t = triangles_[slot];
-  Vec2 u = draw.u;
   if (draw.joint) {
     // u.x had 24 random bits. The choice of the slot used some of them; bits made from u.y are added in their places.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
@@ -125,9 +130,9 @@ bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3
   return sample_slot(tree_slot_[choice.light], point, choice.probability * probability, choice.left, draw, sample);
 }
 
-bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const {
+bool Lights::sample_sun(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
   sample = {};
-  return sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.facing_irradiance);
+  return sample_sun(point, normal, double(u.x), u.y, 1, sample) && is_finite(sample.facing_irradiance);
 }
 
 /// The slot of the triangle's part at a point of the triangle.

@@ -105,9 +105,9 @@ class Lights {
   enum class From : std::uint8_t { all, not_suns };
   /// True if a directional light shines.
   bool has_suns() const { return !suns_.empty(); }
-  /// Chooses a directional light in proportion to its irradiance on the surface of `normal` (unit); u in [0, 1). False
-  /// if none is above the surface.
-  bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
+  /// Chooses a directional light in proportion to its irradiance on the surface of `normal` (unit). u.x in [0, 1)
+  /// chooses; the rest of u.x and u.y choose a direction of the light's disc. False if none is above the surface.
+  bool sample_sun(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
 
   bool empty() const { return slots_.empty(); }        ///< true if the emission table has no slot
   std::size_t count() const { return slots_.size(); }  ///< number of slots
@@ -151,16 +151,18 @@ class Lights {
   /// Emits a photon from four numbers in [0, 1); neighbouring numbers give neighbouring photons. u[0] chooses the slot.
   /// Its place inside the slot's part of [0, 1), stretched to [0, 1), replaces u[0] below.
   /// Triangle: u[0] and u[1] give the point, u[2] and u[3] the direction; if two-sided, u[2] below 1/2 means the front.
-  /// Point or spot light: u[0] and u[1] give the direction. Directional light: u[0] and u[1] give the point on the
-  /// scene sphere's disc. Environment: u[0] and u[1] give the direction, u[2] and u[3] the point on the disc.
+  /// Point or spot light: u[0] and u[1] give the direction, u[2] and u[3] the place on its sphere. Directional light:
+  /// u[0] and u[1] give the point on the scene sphere's disc, u[2] and u[3] the direction in the light's own disc.
+  /// Environment: u[0] and u[1] give the direction, u[2] and u[3] the point on the scene sphere's disc.
   /// The table must not be empty.
   ///
   /// flux = (flux of the slot at this frame) / probability, so the mean over u is total_flux(). A triangle's flux is
   /// pi L A, twice as much if two-sided, and its directions have the pdf cos / pi. A point light's flux is 4 pi I, with
-  /// uniform directions; a spot's directions are drawn by intensity. A directional light's flux is E pi R^2, from the
-  /// disc of the scene sphere's radius R; the environment's is the same with radiance / pdf in place of E. With
-  /// table.aim the start points of the last two are drawn by Aim, and flux is multiplied by Aim::Start::flux. Flux is
-  /// zero if the slot emits nothing at this frame. Throws InputError if flux / probability overflows float32.
+  /// uniform directions; a spot's directions are drawn by intensity. A directional light's flux is E pi R^2, times
+  /// 2 / (1 + cos a) if half its angular diameter is a, from the disc of the scene sphere's radius R; the environment's
+  /// is the same with radiance / pdf in place of E. With table.aim the start points of the last two are drawn by Aim,
+  /// and flux is multiplied by Aim::Start::flux. Flux is zero if the slot emits nothing at this frame. Throws
+  /// InputError if flux / probability overflows float32.
   PhotonEmission emit(const std::array<double, 4>& u) const {
     PhotonEmission photon;
     emit({&u, 1}, {&photon, 1});
@@ -188,7 +190,7 @@ class Lights {
                    LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, double total, LightSample& s) const;
   SkySource sky() const { return {*environment_, aim_, guide_.get()}; }
-  bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
+  bool sample_sun(Vec3 point, Vec3 normal, double u, float u_disc, double probability, LightSample& s) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal, From from) const {
     return !has_distant() ? 0 : from == From::all ? sum_distant(normal) : environment_weight_;

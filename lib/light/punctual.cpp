@@ -16,6 +16,26 @@ double one_minus_cos(double angle) {
   return 2 * s * s;
 }
 
+/// Directions around an axis, uniform in the solid angle 2 pi end [sr].
+struct Cone {
+  double end;  ///< 1 - cosine of half the angle; 2: all directions
+
+  /// 1 - cosine of the angle between the axis and the direction that a point of the unit disc stands for.
+  double one_minus_cos(Vec2 disc) const { return end * std::min(1.0, length2(disc)); }
+  /// The direction (unit). A cone so narrow that floats cannot resolve it gives the axis.
+  Vec3 direction(Vec3 axis, Vec2 disc) const {
+    const double omc = one_minus_cos(disc), across = std::sqrt(end * std::max(0.0, 2 - omc));
+    return normalize(
+        Frame(axis).to_world({float(across * double(disc.x)), float(across * double(disc.y)), float(1 - omc)}));
+  }
+
+ private:
+  static double length2(Vec2 v) { return double(v.x) * double(v.x) + double(v.y) * double(v.y); }
+};
+
+/// The disc of directions of a directional light.
+Cone disc_of(const LampSize& size) { return {one_minus_cos(0.5 * double(size.angle_rad))}; }
+
 }  // namespace
 
 SpotProfile::SpotProfile(const PunctualLight& light)
@@ -45,14 +65,18 @@ Rgbd PunctualSource::flux(const PunctualLight& light, double disc_radius) {
   switch (light.kind) {
     case PunctualLight::Kind::point: return intensity * (4 * kPiD);
     case PunctualLight::Kind::spot: return intensity * SpotProfile(light).solid_angle();
-    case PunctualLight::Kind::directional: return intensity * (kPiD * disc_radius * disc_radius);
+    case PunctualLight::Kind::directional:
+      return intensity * (kPiD * disc_radius * disc_radius / (1 - 0.5 * disc_of(light.size).end));
   }
   return {};
 }
 
 LightBounds PunctualSource::bounds(const Box3&) const {
   LightBounds b;
-  b.box.add(placed.position);
+  const float r = placed.light.size.radius_m;
+  const Vec3 reach{r, r, r};
+  b.box.add(placed.position - reach);
+  b.box.add(placed.position + reach);
   b.axis = placed.direction;
   b.add_punctual(max_component(placed.light.intensity));
   b.cos_spread = -1;
@@ -65,8 +89,10 @@ LightBounds PunctualSource::bounds(const Box3&) const {
   return b;
 }
 
-bool PunctualSource::sample(Vec3 point, double probability, LightSample& s) const {
-  s.delta = true;
+bool PunctualSource::sample(Vec3 point, Vec2 u, double probability, LightSample& s) const {
+  s.only_sampled = true;
+  if (placed.light.has_size()) [[unlikely]]
+    return sample_sized(point, u, probability, s);
   if (placed.light.distant()) {
     s.wi = -placed.direction;
     s.position = point + s.wi * aim.distance_beyond();
@@ -77,8 +103,7 @@ bool PunctualSource::sample(Vec3 point, double probability, LightSample& s) cons
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0)) return false;
-  // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
-  const double nearest = std::max(distance, 1e-6 * aim.scene_radius());
+  const double nearest = std::max(distance, aim.least_distance());
   s.wi = Vec3(to / distance);
   s.position = placed.position;
   double falloff = 1;
@@ -88,15 +113,60 @@ bool PunctualSource::sample(Vec3 point, double probability, LightSample& s) cons
   return falloff > 0;
 }
 
+/// sample() of a light with a size. No formula has a difference of nearly equal numbers or divides by a small size.
+bool PunctualSource::sample_sized(Vec3 point, Vec2 u, double probability, LightSample& s) const {
+  const Vec2 disc = sample_disc_concentric(u);
+  if (placed.light.distant()) {
+    const Cone sun = disc_of(placed.light.size);
+    s.wi = sun.direction(-placed.direction, disc);
+    s.position = point + s.wi * aim.distance_beyond();
+    s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) / ((1 - 0.5 * sun.end) * probability));
+    s.distant = true;
+    return true;
+  }
+  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
+  const double distance = length(to), r = double(placed.light.size.radius_m);
+  const bool outside = distance > r;
+  const double sine2 = outside ? r / distance * (r / distance) : 1, cosine = std::sqrt(1 - sine2);
+  const Cone cone{outside ? sine2 / (1 + cosine) : 2};
+  s.wi = cone.direction(distance > 0 ? Vec3(to / distance) : placed.direction, disc);
+  const double omc = cone.one_minus_cos(disc), along = distance * (1 - omc),
+               half_chord = std::sqrt(std::max(0.0, r * r - distance * distance * omc * (2 - omc)));
+  s.position = Vec3(Vec3d(point) + Vec3d(s.wi) * (outside ? along - half_chord : along + half_chord));
+  double falloff = 1;
+  if (placed.light.kind == PunctualLight::Kind::spot)
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + Vec3d(s.wi)));
+  const double nearest = std::max({distance, r, aim.least_distance()}), gain = outside ? 2 / (1 + cosine) : 4;
+  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (gain * falloff / (nearest * nearest * probability)));
+  return falloff > 0;
+}
+
 void PunctualSource::emit(double u0, const std::array<double, 4>& u, double, PhotonEmission& e) const {
+  if (placed.light.has_size()) [[unlikely]]
+    return emit_sized(u0, u, e);
   if (placed.light.distant()) {
     e.travel = placed.direction;
     start_distant(aim, u0, u[1], Rgbd(e.flux), e);
     return;
   }
-  // A point light has no extent, so the first two numbers give the direction.
+  // A light without size has one place, so the first two numbers give the direction.
   e.origin = placed.position;
   e.travel = sample_punctual_direction(placed, u0, u[1]);
+}
+
+void PunctualSource::emit_sized(double u0, const std::array<double, 4>& u, PhotonEmission& e) const {
+  const auto below_one = [](double x) { return std::min(float(x), kOneMinusEpsilon); };
+  const Vec2 disc = sample_disc_concentric({below_one(u[2]), below_one(u[3])});
+  if (placed.light.distant()) {
+    e.travel = disc_of(placed.light.size).direction(placed.direction, disc);
+    start_distant(aim, u0, u[1], Rgbd(e.flux), e);
+    return;
+  }
+  e.travel = sample_punctual_direction(placed, u0, u[1]);
+  const float height = std::sqrt(std::max(0.0f, 1 - disc.x * disc.x - disc.y * disc.y));
+  e.normal = normalize(Frame(e.travel).to_world({disc.x, disc.y, height}));
+  e.origin = Vec3(Vec3d(placed.position) + Vec3d(e.normal) * double(placed.light.size.radius_m));
+  e.chord = 2 * placed.light.size.radius_m * height;
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {

@@ -1,5 +1,12 @@
-// lib/light/punctual.h -- point, spot and directional lights of KHR_lights_punctual: falloff, flux and emission of
-// photons.
+// lib/light/punctual.h -- point, spot and directional lights of KHR_lights_punctual: falloff, size, flux, light samples
+// and emission of photons.
+//
+// With a size (LampSize), a point or spot light of intensity I(w) in the direction of travel w is a sphere of radius r
+// whose whole surface has the radiance L(w) = I(w) / (pi r^2). Seen along w the sphere is a disc of the area pi r^2, so
+// its intensity is I(w): size changes neither flux nor far light. At the distance d > r the sphere fills a cone with
+// sin = r / d, and a surface that faces a point light receives pi L sin^2 = I / d^2, as without a size. Inside the
+// sphere the radiance L comes from all directions. A directional light of irradiance E and angular diameter 2 a is a
+// disc of directions with the radiance E / (pi sin^2 a), so a surface that faces the disc receives E.
 #pragma once
 
 #include <array>
@@ -35,17 +42,30 @@ struct PunctualSource {
   const PlacedLight& placed;
   const Aim& aim;  ///< of the photons of a directional light; knows the scene sphere
 
-  /// Flux [W]; of a directional light, that through the scene sphere's disc.
+  /// Flux [W]; of a directional light, that through the scene sphere's disc: 2 / (1 + cos a) E pi R^2, since each
+  /// direction of the light's disc has a scene disc of its own.
   Rgbd flux() const { return flux(placed.light, aim.scene_radius()); }
   static Rgbd flux(const PunctualLight& light, double disc_radius);
   bool emits() const { return max_component(placed.light.intensity) > 0; }
   bool distant() const { return placed.light.distant(); }
   /// Bounds of a point or spot light for the light tree, which lies in no closed part.
   LightBounds bounds(const Box3& backs_within = {}) const;
-  /// Fills the sample of a light that was chosen with this probability. False if no light reaches the point.
-  bool sample(Vec3 point, double probability, LightSample& s) const;
-  /// Emits a photon whose flux is set: u0 and u[1] give the direction, or the start of a directional light.
+  /// Fills the sample of a light that was chosen with this probability P. False if no light reaches the point. u in
+  /// [0, 1) is used if the light has a size: it draws a direction uniform in the solid angle that the light fills, and
+  /// facing_irradiance is that of the whole light:
+  ///     outside of a sphere   2 I(w) / (d^2 (1 + cos) P) with sin = r / d, which goes to I / d^2 for a small r
+  ///     inside of a sphere    4 I(w) / (r^2 P)
+  ///     directional           2 E / ((1 + cos a) P)
+  bool sample(Vec3 point, Vec2 u, double probability, LightSample& s) const;
+  /// Emits a photon whose flux is set: u0 and u[1] give the direction, or the start of a directional light; u[2] and
+  /// u[3] the start on a sphere, or the direction in the disc of a directional light. A photon of a sphere starts
+  /// uniformly on the disc that the sphere shows in its direction, so its directions have the pdf cos / pi around the
+  /// sphere's normal. PhotonEmission::chord lets them light what lies inside of the sphere.
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
+
+ private:
+  [[gnu::noinline]] bool sample_sized(Vec3 point, Vec2 u, double probability, LightSample& s) const;
+  [[gnu::noinline]] void emit_sized(double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
 };
 
 /// Unit direction in which a point or spot light emits a photon, from u1 and u2 in [0, 1). The pdf is in proportion to

@@ -170,6 +170,8 @@ class PhotonTracer {
   std::size_t start(std::span<const std::uint64_t> numbers, std::uint32_t first_path, Wave& wave,
                     PhotonBatch& batch) const;
   void find_solids_of_lights();
+  bool fly_on(std::size_t i, const Ray& ray, Wave& wave, PhotonBatch& batch) const;
+  std::size_t leave_spheres_of_lamps(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   bool moves(const Hit& hit) const { return hit.surface >= tracer_.frame().static_count; }
   std::size_t fly(std::uint32_t bounce, std::size_t count, Wave& wave, std::size_t& scattered_count,
@@ -187,6 +189,7 @@ class PhotonTracer {
   PhotonHalton halton_;
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
   bool has_point_lights_ = false;  ///< true if there are point or spot lights
+  bool has_spheres_ = false;       ///< true if one of them has a size
   bool directions_ = false;
   std::optional<Media> media_;              ///< the frame's media, with raised majorants
   std::vector<char> solid_;                 ///< by material: true for the boundary of solid glass

@@ -111,7 +111,7 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
 }
 
 /// Radiance that a path finds which goes back from a caustic photon's place: that of one light sample by the lobes S
-/// where the path meets a surface, reflected by the place's Lambert lobe. 0 for a lamp with extent.
+/// where the path meets a surface, reflected by the place's Lambert lobe. 0 for a lamp that rays meet.
 double found_by_path(const RenderScene& scene, const formats::Photon& photon, Vec3 wi, const PathRandom& random) {
   const Vec3 place = vec_of(photon.position);
   const float offset = 4 * Reach(scene.tracer).offset();
@@ -127,8 +127,8 @@ double found_by_path(const RenderScene& scene, const formats::Photon& photon, Ve
   const ShadingPoint lobes(met, -wi, there);
   LightSample light;
   if (!lobes.bsdf.has_specular() || lobes.bsdf.specular_is_delta() ||
-      !scene.lights.sample(met.position, lobes.normal, random.get2(0, Purpose::light_point), light) || !light.delta ||
-      !lobes.sees(light.wi))
+      !scene.lights.sample(met.position, lobes.normal, random.get2(0, Purpose::light_point), light) ||
+      !light.only_sampled || !lobes.sees(light.wi))
     return 0;
   const Bsdf::Direction from = lobes.bsdf.along(lobes.frame.to_local(light.wi));
   return double(channel_mean(reflectance * lobes.eval_specular(from) * light.facing_irradiance * from.w.z));

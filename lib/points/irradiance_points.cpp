@@ -245,7 +245,10 @@ std::optional<Box3> box_of_lights(const SceneFrame& frame) {
   Box3 box;
   for (const PlacedLight& placed : frame.lights) {
     if (placed.light.distant()) return std::nullopt;
-    box.add(placed.position);
+    const float r = placed.light.size.radius_m;
+    const Vec3 reach{r, r, r};
+    box.add(placed.position - reach);
+    box.add(placed.position + reach);
   }
   for (const Surface& surface : frame.surfaces)
     if (frame.materials[surface.material].emissive())

@@ -18,9 +18,20 @@ constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
 /// Where a photon lands, if it meets a Lambert lobe within `reach` [m]. It may pass panes on its way. Its flux [W] is
 /// that of the only photon of a map.
-std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
-                                 float reach, const PathRandom& random) {
+std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, PhotonEmission emission, float reach,
+                                 const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
+  // A surface inside of a lamp that is a sphere: the photon becomes one of the two that PhotonEmission::chord names.
+  if (emission.chord > 0) [[unlikely]] {
+    const Vec3 far_side = emission.origin - emission.travel * emission.chord;
+    if (Hit inside; tracer.intersect({far_side, emission.travel, 0, emission.chord}, inside)) {
+      emission.flux *= 2;
+      if (random.get1(0, Purpose::light_choice) < 0.5f) {
+        emission.origin = far_side;
+        reach = std::min(reach, emission.chord);
+      }
+    }
+  }
   Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
   Hit hit;
   SurfacePoint place;

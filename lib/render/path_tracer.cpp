@@ -284,7 +284,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   LightSample light;
   const Vec3 normal = behind ? -x.normal : x.normal;
   const bool found =
-      of_sun ? scene_.lights.sample_sun(x.surface.position, normal, random.get1(state.bounce, Purpose::sun), light)
+      of_sun ? scene_.lights.sample_sun(x.surface.position, normal, random.get2(state.bounce, Purpose::sun), light)
              : scene_.lights.sample(x.surface.position, normal, random.get2(state.bounce, Purpose::light_point), light,
                                     sampled_lights());
   if (!found || (behind ? !x.sees_behind(light.wi) : !x.sees(light.wi))) return;
@@ -292,7 +292,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   const Vec3 wi = from.w;
   Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
   Rgb glossy = has_specular ? x.eval_specular(from) : Rgb(0.0f);
-  if (!light.delta) {
+  if (!light.only_sampled) {
     const float pdf = light.pdf_solid_angle * share;
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
     if (has_specular) glossy *= mis_power(pdf, at.times_specular * x.pdf_specular(wi));

@@ -29,6 +29,7 @@ std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animat
     if (scene.nodes[n].light < 0 || segment.hides(std::uint32_t(n))) continue;
     PlacedLight placed{animator.light(std::size_t(scene.nodes[n].light), time_s), {}, {}, std::uint32_t(n)};
     placed.light.intensity *= seen[n] ? unit : 0.0f;
+    if (placed.light.size == LampSize{}) placed.light.size = scene.nodes[n].lamp_size;
     placed.position = Vec3(world[n].translation - origin);
     placed.direction = Vec3(normalize(world[n].direction({0, 0, -1})));
     if (!is_finite(placed.position) || !(max_component(abs(placed.position)) < kMaxCoordinate))

@@ -136,6 +136,16 @@ void keep_node_extras(const Json& document, Gated& gated) {
       gated.node_extras.emplace(i, extras->dump());
 }
 
+/// Keeps the `extras` of the lights of KHR_lights_punctual as text.
+void keep_light_extras(const Json& document, Gated& gated) {
+  static const nlohmann::json::json_pointer kLights("/extensions/KHR_lights_punctual/lights");
+  if (!document.contains(kLights) || !document[kLights].is_array()) return;
+  const Json& lights = document[kLights];
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (lights[i].is_object() && lights[i].contains("extras"))
+      gated.light_extras.emplace(i, lights[i]["extras"].dump());
+}
+
 /// Keeps the `lens_shift` of cameras' `extras`.
 void keep_lens_shifts(const Json& document, const std::string& path, Gated& gated) {
   const Json& cameras = array_of(document, "cameras");
@@ -327,6 +337,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   check_types(document, path, left_out);
   check_version(document, path);
   keep_node_extras(document, gated);
+  keep_light_extras(document, gated);
   keep_lens_shifts(document, path, gated);
   check_extensions(document, path, gated);
   leave_out_nulls(document, left_out);

@@ -3,8 +3,8 @@
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path that a URI names, and
 // treats values of the wrong type as missing. So the gate parses the JSON first, with limits, and checks it. Then the
 // gate rewrites the JSON: it removes images, extras and unknown extensions, unpacks packed geometry, and replaces the
-// URI of every buffer by the name of an approved range of bytes. Images, extras of nodes and lens shifts are kept in
-// Gated.
+// URI of every buffer by the name of an approved range of bytes. Images, extras of nodes and lights, and lens shifts
+// are kept in Gated.
 #pragma once
 
 #include <array>
@@ -54,6 +54,7 @@ struct Gated {
   std::vector<std::string> warnings;  ///< features of the file that this program ignores, one line each
   std::vector<PointerChannel> pointers;
   std::map<std::size_t, std::string> node_extras;            ///< by index of the node: its `extras` as JSON text
+  std::map<std::size_t, std::string> light_extras;           ///< by index of the light: its `extras` as JSON text
   std::map<std::size_t, std::array<double, 2>> lens_shifts;  ///< by index of the camera: its extras' `lens_shift`
 };
 

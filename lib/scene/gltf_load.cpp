@@ -10,6 +10,7 @@
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_place.h"
+#include "lib/scene/lamp_size.h"
 #include "lib/scene/place_surfaces.h"
 
 namespace tempolux {
@@ -99,6 +100,10 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   for (std::size_t n = 0; n < scene.nodes.size(); ++n)
     if (Node& node = scene.nodes[n]; node.camera >= 0 && !node.extras.empty())
       node.camera_extras = read_camera_extras(node.extras, node_place(scene, n), scene.warnings);
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    if (Node& node = scene.nodes[n]; node.light >= 0 && !node.extras.empty())
+      node.lamp_size =
+          read_lamp_size(node.extras, scene.lights[std::size_t(node.light)].kind, node_place(scene, n), scene.warnings);
   import_meshes(import);
   import_deformation(import);
   import_animations(import, options.animation);

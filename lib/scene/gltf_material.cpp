@@ -8,6 +8,7 @@
 
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_model.h"
+#include "lib/scene/lamp_size.h"
 #include "lib/scene/material_properties.h"
 
 namespace tempolux::gltf {
@@ -204,6 +205,8 @@ PunctualLight read_light(Import& import, std::size_t index) {
         std::min(limited(import, source.spot.innerConeAngle, 0, outer, place + ".spot.innerConeAngle"),
                  float(outer * kSharpestSpot));
   }
+  if (const auto extras = import.gated->light_extras.find(index); extras != import.gated->light_extras.end())
+    light.size = read_lamp_size(extras->second, light.kind, import.scene.path + ": " + place, import.scene.warnings);
   if (source.range != 0) import.ignore("range of lights (light follows the inverse square)");
   return light;
 }

@@ -218,6 +218,15 @@ inline constexpr double kSharpestSpot = 0.9999;
 /// Bounds of the outer cone's angle, rad. The lower one replaces an angle of 0 or less.
 inline constexpr double kNarrowestSpot = 1e-12, kWidestSpot = std::numbers::pi / 2 + 1e-6;
 
+/// The size of a punctual light. glTF has no such property; `extras` say it (lamp_size.h). With the size 0 shadows are
+/// sharp. Rays never meet the light, whatever its size: light samples and photons alone find it.
+struct LampSize {
+  float radius_m = 0;   ///< of a point or spot light, which is a sphere
+  float angle_rad = 0;  ///< of a directional light, which is a disc of this angular diameter; at most pi
+
+  bool operator==(const LampSize&) const = default;
+};
+
 /// A light of KHR_lights_punctual. It shines along the node's -Z; the node's scale has no effect. Light sampling,
 /// emission of photons and flux use the same falloff (SpotProfile in lib/light/punctual.h). A member that changes the
 /// light must enter lights_hash(), else files of the old light are reused.
@@ -227,9 +236,11 @@ struct PunctualLight {
   Kind kind = Kind::point;
   Rgb intensity{1.0f};  ///< colour x intensity: W/sr (point, spot) or W/m^2 (directional)
   float inner_cone_rad = 0, outer_cone_rad = 0.785398f;  ///< spot: half angles
+  LampSize size;
 
   /// True if the light is infinitely far away and has a direction in place of a position.
   bool distant() const { return kind == Kind::directional; }
+  bool has_size() const { return size.radius_m > 0 || size.angle_rad > 0; }
   bool operator==(const PunctualLight&) const = default;
 };
 
@@ -254,6 +265,7 @@ struct Node {
   std::uint32_t object = kNone;  ///< id.object of its mesh: 0, 1, 2 ... in node order
   std::string extras;            ///< the node's custom properties as JSON text; empty: none
   CameraExtras camera_extras;    ///< of a node with a camera
+  LampSize lamp_size;            ///< of its light, if the light itself says no size
   /// KHR_node_visibility at rest. A node is seen if it and all its ancestors are visible.
   bool visible = true;
   /// True if the node is hidden at all times: the node or an ancestor is not visible at rest, and no animation makes it

@@ -176,6 +176,11 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
       hasher.add(placed.light.inner_cone_rad);
       hasher.add(placed.light.outer_cone_rad);
     }
+    if (placed.light.size != LampSize{}) {  // lights without size keep the hashes that they had before sizes were read
+      hasher.add(std::string_view("size"));
+      hasher.add(placed.light.size.radius_m);
+      hasher.add(placed.light.size.angle_rad);
+    }
     if (!placed.light.distant()) hasher.add(placed.position);
     if (placed.light.kind != PunctualLight::Kind::point) hasher.add(placed.direction);
   }

@@ -25,7 +25,7 @@ bool sample_other_than_suns(const Lights& lights, const Receiver& at, Vec2 u, Di
   return lights.sample(at.place.position, at.shading, u, sample.light, Lights::From::not_suns) && arrives(at, sample);
 }
 
-bool sample_sun(const Lights& lights, const Receiver& at, float u, DirectSample& sample) {
+bool sample_sun(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample) {
   return lights.sample_sun(at.place.position, at.shading, u, sample.light) && arrives(at, sample);
 }
 

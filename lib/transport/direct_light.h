@@ -29,6 +29,6 @@ bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec
 /// The same for all lights but the directional ones. u chooses the light and the point.
 bool sample_other_than_suns(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
 /// The same for the directional lights.
-bool sample_sun(const Lights& lights, const Receiver& at, float u, DirectSample& sample);
+bool sample_sun(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
 
 }  // namespace tempolux

@@ -67,7 +67,7 @@ Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const Mediu
   // Light travels against the direction of the path, so the peak of the phase function lies ahead along the path.
   const float phase = pdf_hg(point.g, point.travel, light.wi);
   Rgb radiance = light.facing_irradiance * phase;
-  if (draw.weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
+  if (draw.weigh && !light.only_sampled) radiance *= mis_power(light.pdf_solid_angle, phase);
   if (is_black(radiance)) return radiance;
   ++shadow_rays;
   SurfacePoint from{};  // without an offset, because there is no surface in a medium

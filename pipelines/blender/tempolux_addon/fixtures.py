@@ -47,21 +47,11 @@ class Lamps:
         if first.kind == "AREA" and first.spread < math.pi - 1e-3:
             self.add_spots(item, states, places)
             return
-        bare = first.kind == "POINT" and first.radius > 0 and "visible_camera" in item.flags and self.in_view(item)
-        if bare:
-            lost(
-                Damage.DETAIL,
-                item.label,
-                "the camera would see the ball of this lamp, which Blender hides: it has no radius here, its shadows are "
-                "sharp (radius kept in extras)",
-            )
-        elif first.emits():
+        # The camera would see the ball of a lamp that Blender hides from it. No ray meets a lamp of glTF.
+        unseen = first.kind == "POINT" and first.radius > 0 and "visible_camera" in item.flags and self.in_view(item)
+        if first.emits() and not unseen:
             self.add_emitter(item, states, places)
             return
-        if first.kind == "SPOT" and first.radius > 0:
-            lost(Damage.DETAIL, item.label, "a spot has no radius here: its shadows are sharp (radius kept in extras)")
-        if first.kind == "SUN" and first.angle > .001:
-            lost(Damage.DETAIL, item.label, "a sun has no angle here: its shadows are sharp (angle kept in extras)")
         if first.kind == "SPOT" and first.cone > math.pi / 2:
             lost(Damage.LIGHT, item.label, "a spot wider than half of all directions is cut there")
         lights = self.document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})[

@@ -218,7 +218,7 @@ TEST(EnvironmentAmongLights, SumsAndDensitiesAgree) {
   for (int i = 0; i < 1000; ++i) {
     LightSample s;
     const PathRandom random(1, std::uint64_t(i));
-    if (!lights.sample({}, normal, random.get2(0, Purpose::light_point), s) || s.delta) continue;
+    if (!lights.sample({}, normal, random.get2(0, Purpose::light_point), s) || s.only_sampled) continue;
     if (s.position_offset > 0) continue;  // the lamp
     EXPECT_NEAR(pdf_environment(lights, {}, normal, s.wi), s.pdf_solid_angle, 2e-3f * s.pdf_solid_angle);
   }

@@ -237,7 +237,7 @@ TEST(PunctualLights, DirectionalLightComesFromBeyondTheScene) {
   EXPECT_NEAR(irradiance(lights, {1, 2, 3}, kUp, 4).r, 3 * std::sqrt(0.5), 1e-6);
   LightSample s;
   ASSERT_TRUE(lights.sample({5, 5, 5}, kUp, 0.3f, {}, s));
-  EXPECT_TRUE(s.delta);
+  EXPECT_TRUE(s.only_sampled);
   EXPECT_GT(length(s.position), std::sqrt(75.0f));
   EXPECT_FALSE(lights.sample({0, 0, 0}, -kUp, 0.3f, {}, s));
 }
@@ -290,7 +290,7 @@ TEST(Lights, PdfIsThatOfTheSample) {
     LightSample s;
     if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice), random.get2(i, Purpose::light_point), s))
       continue;
-    if (s.delta) continue;
+    if (s.only_sampled) continue;
     // The triangle is the one whose density agrees; there must be one.
     double best = INFINITY;
     for (const EmissionSlot& slot : lights.slots()) {

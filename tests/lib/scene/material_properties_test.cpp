@@ -52,8 +52,8 @@ bool flip_member(MaterialTextures& t, int n) {
                   normal_scale, clearcoat_normal_scale);
 }
 bool flip_member(PunctualLight& l, int n) {
-  auto& [name, kind, intensity, inner, outer] = l;
-  return flip_one(n, kind, intensity, inner, outer);
+  auto& [name, kind, intensity, inner, outer, size] = l;
+  return flip_one(n, kind, intensity, inner, outer, size.radius_m, size.angle_rad);
 }
 bool flip_member(MediumOptions& o, int n) {
   auto& [sigma_t, albedo, g] = o;
