@@ -110,8 +110,9 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
   return pilot;
 }
 
-/// Radiance that a path finds which goes back from a caustic photon's place: that of one light sample by the lobes S
-/// where the path meets a surface, reflected by the place's Lambert lobe. 0 for a lamp with extent.
+/// Traces a path back from the place of a caustic photon along wi. Where the path meets a surface, one light sample is
+/// taken by the surface's lobes S. Returns the radiance [W/m^2/sr, mean of the channels] of this sample after the
+/// reflection by the Lambert lobe of the photon's place. 0 for a lamp with an extent, a mirror and smooth glass.
 double found_by_path(const RenderScene& scene, const formats::Photon& photon, Vec3 wi, const PathRandom& random) {
   const Vec3 place = vec_of(photon.position);
   const float offset = 4 * Reach(scene.tracer).offset();
