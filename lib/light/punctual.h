@@ -33,9 +33,9 @@ struct SpotProfile {
 /// it, so it has no pdf_solid_angle().
 struct PunctualSource {
   const PlacedLight& placed;
-  const Aim& aim;  ///< of the photons of a directional light; knows the scene sphere
+  const Aim& aim;  ///< where photons of a directional light start; also holds the radius of the scene sphere
 
-  /// Flux [W]; of a directional light, that through the scene sphere's disc.
+  /// Flux [W]; of a directional light, the flux through the scene sphere's disc.
   Rgbd flux() const { return flux(placed.light, aim.scene_radius()); }
   static Rgbd flux(const PunctualLight& light, double disc_radius);
   bool emits() const { return max_component(placed.light.intensity) > 0; }
