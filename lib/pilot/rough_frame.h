@@ -66,7 +66,8 @@ struct RoughFrame {
   double wanted = 0, wanted_of = 0;
   double samples = 0;  ///< mean number of samples per pixel
   SampleEffort path;   ///< of whole paths
-  /// Of paths that end at irradiance points. Its variances without layer indirect also hold for frames with records.
+  /// Effort of paths that end at irradiance points. The variances without layer indirect also hold for frames with
+  /// records.
   SampleEffort gather;
   double record_sample = 0;  ///< shadow rays of a sample that reads a record
   double records = 0;        ///< number of records that the picture needs

@@ -209,7 +209,7 @@ Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, 
   return sharing;
 }
 
-/// What pilots found in the frames `d.looked`.
+/// The results of the pilots in the frames `d.looked`, and what later pilots reuse of them.
 struct LookedAt {
   StaticTree tree;
   std::unique_ptr<FramePilot> middle;
