@@ -31,7 +31,8 @@ void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
   tool.choice_option(
       "--method", options.method, {"frames", "walkthrough", "auto", "preview", "still"},
       "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
-      "walkthrough where it pays; preview: fast, with light textures from the photons of many frames");
+      "walkthrough where it pays; preview: fast, with light textures from the photons of many frames; still: while the "
+      "camera stands, only pixels that change are sampled");
   tool.choice_option(
       "--filter", options.filter, {"auto", "none", "1", "3", "5", "7", "9"},
       "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "

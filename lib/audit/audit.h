@@ -57,8 +57,9 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 
 /// Audits the layers direct, caustic and indirect of a frame: estimates their radiance without bias and without files
 /// of light, and compares. add_photons() finds the light of some of the scene's lights by photons that the camera sees,
-/// add_paths() that of the others by camera paths. The two calls together must cover each light of the scene once. The
-/// layer specular is audited in the whole picture only, and only its light on surfaces that mirrors and glass show.
+/// add_paths() finds the light of the other lights by camera paths. The two calls together must cover each light of the
+/// scene once. The layer specular is audited in the whole picture only, and only its light on surfaces that mirrors and
+/// glass show.
 ///
 /// The effort is divided into kAudits independent audits with different seeds. Paths and their starts are stratified
 /// within an audit; the standard error comes from the differences between audits, so it includes the gain. There is no
@@ -70,8 +71,8 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 /// too small a standard error. Where photons find all light, the error of a bias is therefore at least the error that
 /// photons would have if the frame were right. A pixel's light L then arrives by photons of contribution c, their
 /// number has a Poisson distribution, and the variance of the sum over pixels is the sum of L c. Such entries
-/// exist for any effective number of contributions. If those of few contributions were left out, the others would be
-/// those of audits that met no bright photon, and they would all have too little light.
+/// exist for any effective number of contributions. If entries with few contributions were left out, the remaining
+/// entries would come from audits that met no bright photon, and they would all have too little light.
 class FrameAudit {
  public:
   static constexpr std::size_t kAudits = 32;

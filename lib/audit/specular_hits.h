@@ -15,9 +15,9 @@
 namespace tempolux {
 
 /// The Lambert lobes that camera paths meet after events S. No ray connects a photon to the camera by mirrors and
-/// smooth glass, so each of these places x_i is spread over a disc of radius r_i, a quarter of the width of a
-/// pixel's footprint at the length of the path, times the root of the number of pixels per path. A photon of flux F in
-/// the disc adds to the sum over the pixels of layer specular
+/// smooth glass. So each place x_i at which such a path ends receives the photons in a disc around it. Its radius r_i
+/// is a quarter of the width of a pixel's footprint at the length of the path, times the root of the number of pixels
+/// per path. A photon of flux F in the disc adds to the sum over the pixels of layer specular
 ///
 ///     w_i rho_i / pi F / (pi r_i^2)     w_i: the path's weight, times pixels per path
 ///
@@ -25,8 +25,8 @@ namespace tempolux {
 /// (Layers::mirrored), seen as if each pixel were blurred by its disc.
 class SpecularHits {
  public:
-  /// `count` paths, spread over the pixels of the mask (empty: all) of which the middle, or that of a neighbour, shows
-  /// a surface with S lobes. All arguments but the mask must outlive this object.
+  /// Traces `count` paths from pixels of the mask (empty: all pixels) at whose centre, or at the centre of a
+  /// neighbouring pixel, the camera sees a surface with S lobes. All arguments but the mask must outlive this object.
   SpecularHits(const RenderScene& scene, const CameraView& view, std::span<const std::uint8_t> mask, std::size_t count,
                std::uint64_t seed);
   std::size_t size() const { return hits_.size(); }

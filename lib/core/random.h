@@ -71,7 +71,7 @@ class PathRandom {
 };
 
 /// Key of the random numbers of a place: a hash of seed, position and normal. So a record or point does not depend on
-/// those at other places.
+/// records or points at other places.
 inline std::uint64_t place_key(Vec3 position, Vec3 normal, std::uint64_t seed) {
   std::uint64_t key = mix64(seed + 0x6761746865720001ull);
   for (const float x : {position.x, position.y, position.z, normal.x, normal.y, normal.z})

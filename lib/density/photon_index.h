@@ -80,7 +80,7 @@ class PhotonIndex {
   PhotonIndex() = default;
   /// Copies the photons of these kinds (kind_bit), 33 bytes per photon (16 more during construction); the originals are
   /// not needed afterwards. Positions are moved by `shift` [m]. The same index for any number of threads. O(n log n).
-  /// Throws std::invalid_argument if a position or flux is not finite, std::length_error beyond 2^31 photons.
+  /// Throws std::invalid_argument if a position or flux is not finite, std::length_error for more than 2^31 photons.
   explicit PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
   std::size_t size() const { return size_; }

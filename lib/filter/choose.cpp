@@ -200,8 +200,8 @@ class Choice {
     });
   }
 
-  /// The share w. The standard error s is that of the mean of kEqualPixels pixels. The factor 2 is for (F - M)^2, which
-  /// is as uncertain as V - C if A and B differ by noise alone.
+  /// The share w of choose(). s is the standard error of a mean of kEqualPixels pixels. The factor 2 under the root
+  /// takes the error of (F - M)^2 into account, which is as uncertain as V - C if A and B differ by noise alone.
   float share(std::size_t p, int x, int y) const {
     const float gain = gain_.at(x, y), apart = apart_.at(x, y);
     const float error =

@@ -78,7 +78,7 @@ struct PictureLight {
 ///    neighbourhood. Inside surfaces s is the standard error that V - C - (F - M)^2 has if A and B differ by noise
 ///    alone; at edges s = 0.
 /// 3. The light that was taken from pixels is given to the filtered pixels around them, in proportion to w times the
-///    result. The sum of the layer therefore stays that of M.
+///    result. The sum of the layer therefore stays the same as in M.
 ///
 /// If both halves are equal all over a neighbourhood, the result is M, to the bit if (A + B) / 2 is. A pixel with a
 /// half that is not finite, or above kLargestLight, enters no estimate; its result is M, or the last candidate if M is

@@ -23,8 +23,8 @@ double exposure_of(const PicturePlanes& picture) {
 }
 
 /// Converts a squared error: returns the squared error in codes divided by the squared linear error e^2 = `square`, for
-/// a pixel of this exposed value. The squared error in codes is the mean of those for value + e and value - e. For a
-/// small e the result is the squared slope of the sRGB curve.
+/// a pixel of this exposed value. The squared error in codes is the mean of the squared differences in codes of value +
+/// e and of value - e from value. For a small e the result is the squared slope of the sRGB curve.
 double codes_for_square(double value, double square) {
   if (!(square > 0)) return 0;
   const double e = std::sqrt(square), code = srgb_code(value);

@@ -18,7 +18,7 @@
 namespace tempolux {
 namespace {
 
-/// Sorts `values` by way of their indices: a site holds a Bsdf, so that moving it is dear. Equal values keep their
+/// Sorts `values`. Sorts their indices first, because a site holds a Bsdf and is slow to move. Equal values keep their
 /// order.
 template <class T, class Before>
 void sort_stably(std::vector<T>& values, const Before& before) {
@@ -35,8 +35,8 @@ void sort_stably(std::vector<T>& values, const Before& before) {
 /// Sites per point. Sites of a spot are drawn at random; the mean over 16 sites has an error of a few per cent of the
 /// point's light.
 constexpr double kSitesPerPoint = 16;
-/// Light is explicit if it is farther away than this many R. At this distance a disc of radius R fills 1/17 of what a
-/// Lambert lobe sees: at smaller distances many rays meet the spot.
+/// Light of a spot of radius R is explicit if the spot is farther away than this many R. At this distance a disc of
+/// radius R fills 1/17 of what a Lambert lobe sees: at smaller distances many rays meet the spot.
 constexpr float kExplicitFrom = 4;
 
 }  // namespace

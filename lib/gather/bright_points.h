@@ -152,9 +152,9 @@ class BrightPoints {
   std::vector<float> high_;      ///< h, by point
   float radius_, lamp_reach_;    ///< m: R; kBesideLamp spacings
   std::vector<Site> sites_;      ///< sites of one spot follow each other
-  std::vector<Sites> sites_of_;  ///< by spot; spots of points come before those of lamps
+  std::vector<Sites> sites_of_;  ///< by spot; spots of bright points come before spots of lamps
   std::size_t point_spots_ = 0;
-  std::optional<LightTree> tree_, point_tree_;  ///< over all spots, and over those of points
+  std::optional<LightTree> tree_, point_tree_;  ///< over all spots; over the spots of bright points
 };
 
 /// Distance [m] up to which a lamp beside a surface makes a spot for most of the records: the median distance of a

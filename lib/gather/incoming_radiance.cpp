@@ -22,7 +22,7 @@ namespace {
 /// Largest number of events of one ray. Russian roulette ends all but the share .95^512 = 4e-12 of the rays before.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
-/// Offset that separates the random numbers of media from those of any depth.
+/// Offset that separates the random numbers of media from the random numbers of events at surfaces.
 constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;
 constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
 /// Light that is known at a surface where a gather ray starts, if a point represents the surface or records do.
@@ -49,7 +49,7 @@ struct IncomingRadiance::Met {
 struct IncomingRadiance::Further {
   Ray ray;
   std::uint64_t key = 0;
-  Rgb weight{0.0f};    ///< factor of the radiance along this ray in that of the gather ray
+  Rgb weight{0.0f};    ///< radiance along this ray times this factor adds to the radiance along the gather ray
   std::size_t of = 0;  ///< index of the gather ray
   /// Light at the ray's start that was added. Without `caustic`, lights that the ray meets after events S count.
   LightKinds known{};

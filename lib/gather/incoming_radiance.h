@@ -40,8 +40,8 @@ struct GatherCounts {
 /// The origin of the radiance along a ray, for callers that keep the radiance.
 struct RadianceSource {
   /// The irradiance point that represents the ray's first hit; kNone if no point does, or if the hit has no Lambert
-  /// lobe. If the first hit is close and the ray continues to a second point, `point` is still that of the first hit:
-  /// the choice between the two must not depend on their light (docs/methods/temporal.md).
+  /// lobe. If the first hit is close and the ray continues to a second point, `point` is still the point of the first
+  /// hit: the choice between the two must not depend on their light (docs/methods/temporal.md).
   std::uint32_t point = kNone;
   bool partial = false;  ///< true if the radiance is not the light of this point times a constant
   bool mover = false;    ///< true if the path meets a surface that moves in the segment, or a medium

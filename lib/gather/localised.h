@@ -23,7 +23,7 @@ struct InfluenceThresholds {
 
 /// The change of a static record by the dynamic photons of a frame.
 struct RecordChange {
-  Rgb update{0.0f};     ///< W/m^2: E_t = irradiance + change; may be negative
+  Rgb update{0.0f};     ///< W/m^2: the record's irradiance plus the change, which is E_t; may be negative
   float influence = 0;  ///< W/m^2
 };
 

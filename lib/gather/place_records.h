@@ -53,9 +53,9 @@ struct RecordPicture {
 std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
                           RecordStore& store, GatherCounts& counts);
 
-/// Adds records at those of the points, in their order and in batches of kPlacedTogether, at which the weights of the
-/// records add up to less than options.min_weight. `source` makes the records; null: `gather` does. Same records for
-/// any number of threads.
+/// Goes through the points in their order and in batches of kPlacedTogether. Adds a record at a point where the weights
+/// of the records add up to less than options.min_weight. `source` makes the records; null: `gather` does. Same records
+/// for any number of threads.
 void cover_points(const FinalGather& gather, const RecordSource* source, const PlacementOptions& options,
                   std::span<const SeenPoint> points, RecordStore& store, GatherCounts& counts);
 
@@ -70,11 +70,9 @@ float noise_factor(const GatherCounts& counts);
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 /// Sets the radius of a gathered record to radius_of(). radius_unclamped, which is R before, becomes r without the
-/// limit by min_radius_px. Reduces the translational gradient
-/// - by the ratio of radius_unclamped and radius, because a gradient next to a wall is large, noisy and valid only
-/// within
-///   the smaller radius [Jakob, Mitsuba 0.6];
-/// - so far that the irradiance is not negative within the radius.
+/// limit by min_radius_px. Reduces the translational gradient by the ratio of radius_unclamped and radius: a gradient
+/// next to a wall is large, noisy and valid only within the smaller radius [Jakob, Mitsuba 0.6]. Then reduces the
+/// gradient until the irradiance is not negative within the radius.
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 }  // namespace tempolux

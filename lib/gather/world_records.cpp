@@ -18,7 +18,7 @@ namespace {
 float most_radius(int spacing_class) { return spacing_of(spacing_class + 1); }
 /// Places of class c are tested against wanted places thinned out to class c - kFiner, so that thinning loses little.
 constexpr int kFiner = 3;
-/// Least cosine between the normal of a wanted place, which normal maps bend, and that of a surface near it.
+/// Least cosine between the normal of a wanted place, which normal maps bend, and the normal of a surface near it.
 constexpr float kMayBend = 0.3f;
 /// Changes the seed of the second gather of a record that is gathered twice.
 constexpr std::uint64_t kSecondGather = 0x616761696eull;

@@ -1,7 +1,7 @@
 // lib/image/exr_io.h -- reads and writes OpenEXR frames; exr_io.cpp is the only user of OpenEXR.
 //
 // OpenEXR's own threads are off. Our parallel loops, which obey ThreadLimit, compress and decompress slabs of lines;
-// the slabs are joined in order. The bytes are those that OpenEXR would write.
+// the slabs are joined in order. The bytes are the same as OpenEXR would write.
 #pragma once
 
 #include <cstdint>

@@ -71,9 +71,10 @@ class RecordStore {
   /// 1988 excludes only points behind the record. But points in front must be excluded, too: otherwise the bright
   /// ground below a plate's rim would light the top of the plate. A record is also not valid outside its clearance.
   ///
-  /// The radius that a record would have here cannot exceed that of a record at the distance d by more than d [Krivanek
-  /// 2006], so it is at most s = min (r_i + d_i). If r_i > s + d_i, then the record does not know what is close here: a
-  /// record on open ground has a radius of 60 m, and a narrow house between its spokes may hold the place. Its radius
+  /// The radius that a record would have here cannot exceed the radius of a record at the distance d by more than d
+  /// [Krivanek 2006], so it is at most s = min (r_i + d_i). If r_i > s + d_i, then the rays of the record have missed
+  /// surfaces that are close here: a record on open ground has a radius of 60 m, and a narrow house between its spokes
+  /// may hold the place. Its radius
   /// counts as 2 (s + d_i) - r_i, so the record does not count at all if r_i is above s + d_i by s or more.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Sum of the weights that earlier records have at the place of record number `record`. Leaves out records whose

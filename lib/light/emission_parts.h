@@ -19,9 +19,10 @@ struct EmissionPart {
   Rgb share{1.0f};  ///< mean of the material's emission that textures and alpha let through
 };
 
-/// The parts of a surface's triangles, by triangle, each triangle at least one. A triangle is cut into four similar
-/// parts by the middles of its edges: parts 0, 1, 2 at its corners, part 3 between them. Each of these is cut again or
-/// not. The number that the cuts' parts form, four to the power of cuts, is the code of a piece of the finest size.
+/// The parts of a surface's triangles, ordered by triangle; each triangle has at least one part. A triangle is cut into
+/// four similar parts by the middles of its edges: parts 0, 1, 2 at its corners, part 3 between them. Each part may be
+/// cut again in the same way. The numbers 0 to 3 of the parts that hold a piece, from the largest part to the smallest,
+/// are the digits to base four of the piece's code.
 class EmissionParts {
  public:
   EmissionParts() = default;
@@ -37,7 +38,7 @@ class EmissionParts {
   EmissionParts at(const SceneFrame& frame, std::uint32_t surface) const;
   /// True if a texture or alpha makes the emission vary at the frame of the shares.
   bool vary() const { return vary_; }
-  /// True if the shares are those of the frame, too: only the material's alpha and its cutoff change them.
+  /// True if the shares are also right at this frame. They change only with the material's alpha and its cutoff.
   bool hold_at(const SceneFrame& frame, std::uint32_t surface) const;
 
   std::span<const EmissionPart> all() const { return parts_; }

@@ -38,8 +38,8 @@ struct EmissionSlot {
   double probability = 0;                       ///< of choosing this slot for a photon; sums to 1 over the table
 };
 
-/// Flux [W] as it counts where photons are shared out: luminance, or 5 % of the largest channel if this share is more,
-/// so that blue lamps count.
+/// Weight of a flux [W] when photons are shared out among lights: its luminance, or 5 % of its largest channel if that
+/// is more, so that blue lamps get photons, too.
 double emission_weight(Rgbd flux);
 
 /// Probabilities with which lights emit photons, the same for all frames of a segment. Slots are the parts of
@@ -238,7 +238,7 @@ class Lights {
   std::shared_ptr<const EnvironmentLight> environment_;
   std::shared_ptr<const SkyGuide> guide_;  ///< nullptr: none
   double environment_weight_ = 0;  ///< irradiance from the environment, averaged over all normals; 0: none shines
-  Aim aim_;                        ///< of photons from directional lights and environment; knows the scene sphere
+  Aim aim_;  ///< where photons of directional lights and environment start; also holds the radius of the scene sphere
   LightTree tree_{{}};
 };
 

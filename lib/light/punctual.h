@@ -40,9 +40,9 @@ struct SpotProfile {
 /// it, so it has no pdf_solid_angle().
 struct PunctualSource {
   const PlacedLight& placed;
-  const Aim& aim;  ///< of the photons of a directional light; knows the scene sphere
+  const Aim& aim;  ///< where photons of a directional light start; also holds the radius of the scene sphere
 
-  /// Flux [W]; of a directional light, that through the scene sphere's disc: 2 / (1 + cos a) E pi R^2, since each
+  /// Flux [W]; of a directional light, the flux through the scene sphere's disc: 2 / (1 + cos a) E pi R^2, since each
   /// direction of the light's disc has a scene disc of its own.
   Rgbd flux() const { return flux(placed.light, aim.scene_radius()); }
   static Rgbd flux(const PunctualLight& light, double disc_radius);

@@ -15,7 +15,7 @@ class SkyGuide;
 /// The environment around the scene sphere.
 struct SkySource {
   const EnvironmentLight& map;
-  const Aim& aim;                   ///< of its photons; knows the scene sphere
+  const Aim& aim;                   ///< where its photons start; also holds the radius of the scene sphere
   const SkyGuide* guide = nullptr;  ///< null: none
 
   static constexpr bool emits() { return true; }
@@ -25,8 +25,8 @@ struct SkySource {
   /// Flux [W] through the scene sphere's disc from all directions.
   Rgbd flux() const { return map.integral() * aim.disc_area(); }
   /// Draws a direction for a point by radiance, or from the guide's grid where it has one. u is in [0, 1) and was
-  /// stretched from u_float.x, which has 24 random bits; `probability` is that of choosing the environment. False if no
-  /// light comes from there.
+  /// stretched from u_float.x, which has 24 random bits. `probability`: of choosing the environment. False if no light
+  /// comes from the direction.
   bool sample(Vec3 point, Vec3 normal, double probability, double u, Vec2 u_float, LightSample& s) const;
   /// pdf [1/sr] of a direction (unit), whose place is `place`, given that the environment is chosen.
   double pdf_solid_angle(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const;
@@ -34,8 +34,8 @@ struct SkySource {
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
 };
 
-/// Sets the start of distant light along e.travel, by aim. `flux` [W] is that of a photon with a uniform start on the
-/// scene sphere's disc.
+/// Sets the start and the flux of a photon of distant light that flies along e.travel. The start is drawn by aim.
+/// `flux` [W]: flux of a photon whose start is uniform on the scene sphere's disc.
 void start_distant(const Aim& aim, double u, double v, Rgbd flux, PhotonEmission& e);
 
 }  // namespace tempolux

@@ -21,7 +21,8 @@ constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
 
-/// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
+/// Squared error of a raw frame over the squared error of the filtered frame, without the error of records: geometric
+/// mean of seven scenes
 /// (docs/methods/ways.md).
 constexpr double kFilterGain = 2.4;
 constexpr double kMapNeighbours = PhotonLightOptions{}.caustic_neighbours;

@@ -14,12 +14,12 @@ namespace tempolux {
 enum class IndirectMethod : std::uint8_t { records, gather, paths };
 inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"};
 
-/// The picture to be rendered, and the share of the light's files that it is charged with: other pictures of the shot
-/// read them, too.
+/// The picture to be rendered. Other pictures of the shot read its photons, points and records, too, so only a share of
+/// their work counts as work of this picture.
 struct Order {
   double pixels = 0;                ///< number of pixels of the picture
   std::uint64_t photons = 700'000;  ///< light paths of the photon map, at least
-  bool filtered = true;             ///< lib/filter reduces the noise of samples
+  bool filtered = true;             ///< true if lib/filter will reduce the noise of samples
   std::uint64_t most_photons = 0;   ///< light paths of the map, at most (AskedPicture)
   double pictures = 1;              ///< number of pictures that share photons and points
   double records = 1;               ///< share of the picture's records that it is charged with

@@ -12,8 +12,8 @@ namespace tempolux {
 /// Least cost of the records of a state of light over their cost without reuse (docs/methods/dynamic.md).
 inline constexpr double kLeastRecords = 0.1;
 
-/// What a frame reuses. anew: nothing. light: photons and points of the static scene. records: its photons, points and
-/// records. time: its photons and points, and the records of the frame before.
+/// What a frame reuses. anew: nothing. light: photons and points of the static scene. records: photons, points and
+/// records of the static scene. time: photons and points of the static scene, and the records of the frame before.
 enum class MovingMethod : std::uint8_t { anew, light, records, time };
 inline constexpr const char* kMovingMethods[] = {"anew", "light", "records", "time"};
 

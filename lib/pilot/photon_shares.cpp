@@ -107,7 +107,7 @@ bool is_seen(const Tracer& tracer, std::span<const WeighedPlace> places, const f
   return false;
 }
 
-/// What the paths of the lights bring into the cells.
+/// The flux that the paths of each light bring into the cells.
 struct Arrivals {
   std::vector<double> flux, square;  ///< by cell and light: sums over photons of flux [W] and of its square
   std::size_t photons = 0;           ///< in all cells

@@ -18,10 +18,10 @@
 
 namespace tempolux {
 
-/// CPU times over that of a shadow ray with its light sample and shading, which takes .4 to 1.3 us by scene. Work is
-/// counted in this unit, so that decisions do not depend on the speed or the load of a machine. The look-up of a
-/// record, and a ray of a record with the look-up at its end, take one unit. The times are those of 18 scenes
-/// (docs/methods/ways.md, tests/bench/ways.py).
+/// Costs of the steps of rendering. The unit of work is the CPU time of one shadow ray with its light sample and
+/// shading: .4 to 1.3 us, depending on the scene. Decisions count steps in this unit, so they do not depend on the
+/// speed or the load of a machine. The look-up of a record costs one unit, and so does a gather ray of a record with
+/// the look-up at its end. Measured in 18 scenes (docs/methods/ways.md, tests/bench/ways.py).
 struct Work {
   /// A nearest hit with surface and material, of a camera path or of a light path with the photon that it leaves; also
   /// the look-up of a point.
@@ -35,10 +35,10 @@ struct Work {
 };
 
 /// Work and variance of one sample. Each variance is divided by the square of the error that its pixel may have
-/// (allowed_error at pixel error 1), because a picture file stores about the root of radiance. The value of a sample is
-/// cut where it alone makes its pixel white. Variances are joined over 16 x 9 parts of the picture:
-/// the square of the mean of their roots, because frames take more samples in noisy parts. n samples per pixel leave
-/// variance / n.
+/// (allowed_error at pixel error 1), because a picture file stores about the root of radiance. A sample counts at most
+/// as much as makes its pixel white. The variance of the picture follows from its 16 x 9 parts: it is the square of the
+/// mean of the roots of their variances, because frames take more samples in noisy parts. n samples per pixel leave the
+/// squared error variance / n.
 struct SampleEffort {
   double work = 0;                                  ///< shadow rays
   double all = 0, without_caustic = 0;              ///< variance of all light, and of all but layer caustic
@@ -48,14 +48,15 @@ struct SampleEffort {
 
 /// Caustic light in a part of the picture (pilot_part).
 struct CausticPart {
-  double square =
-      0;  ///< squared light over the square of the picture's; the sum over parts is the picture's mean square
-  double seen_square = 0;  ///< the same over the square of the error that the part may have (SampleEffort)
-  double photons = 0;      ///< number of photons of a light path that the camera sees there (SeenPhotons::photons)
+  /// Square of the part's mean light over the square of the picture's mean light, divided by the number of parts. The
+  /// sum over all parts is a mean over the picture.
+  double square = 0;
+  double seen_square = 0;  ///< the same, but over the square of the error that the part may have (SampleEffort)
+  double photons = 0;  ///< mean number of photons that a light path leaves and the camera sees (SeenPhotons::photons)
 };
 
-/// Work and error of each way to light. Values that were not measured are lower bounds. If even the bounds make a way
-/// too costly, it need not be measured.
+/// Work and error of each way to light in a small number of samples. Values that were not measured are lower bounds. If
+/// even its bounds make a way too costly, the way need not be measured.
 struct RoughFrame {
   bool gathered = false, recorded = false;  ///< are gathering and records measured?
   int places = 0;                           ///< number of visible places with a Lambert lobe
@@ -65,7 +66,8 @@ struct RoughFrame {
   double wanted = 0, wanted_of = 0;
   double samples = 0;  ///< mean number of samples per pixel
   SampleEffort path;   ///< of whole paths
-  /// Of paths that end at irradiance points. Its variances without layer indirect also hold for frames with records.
+  /// Effort of paths that end at irradiance points. The variances without layer indirect also hold for frames with
+  /// records.
   SampleEffort gather;
   double record_sample = 0;  ///< shadow rays of a sample that reads a record
   double records = 0;        ///< number of records that the picture needs

@@ -38,8 +38,8 @@ SeenFlux seen_flux(const PhotonSplats& splats, const CameraView& view, const Pho
           pilot_part((splat->pixel % width + 0.5) / width, (splat->pixel / width + 0.5) / height)};
 }
 
-/// Light, by a density of photons, of a place that a camera ray has reached through mirrors and glass. u: position of
-/// the ray in the picture, in [0, 1)^2.
+/// Light of a place that a camera ray has reached through mirrors and glass, estimated from the density of photons. u:
+/// position of the ray in the picture, in [0, 1)^2.
 SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint> seen, Vec2 u) {
   if (!seen) return {};
   const Vec3 normal = seen->surface.normal_geometric;
@@ -56,8 +56,8 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
 /// Position of camera ray i of kLooks in the picture, in [0, 1)^2.
 Vec2 look_at(std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); }
 
-/// By camera ray the place that it reaches through mirrors and glass, if any. No element if no ray reaches such a
-/// place.
+/// For each of kLooks camera rays, the place that it reaches through mirrors and glass, if any. Empty if no ray reaches
+/// such a place.
 std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, const CameraView& view) {
   std::vector<std::optional<SeenPoint>> places(kLooks);
   parallel_each(kLooks, 64, [&](std::size_t i) {
@@ -110,8 +110,9 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
   return pilot;
 }
 
-/// Radiance that a path finds which goes back from a caustic photon's place: that of one light sample by the lobes S
-/// where the path meets a surface, reflected by the place's Lambert lobe. 0 for a lamp that rays meet.
+/// Traces a path back from the place of a caustic photon along wi. Where the path meets a surface, one light sample is
+/// taken by the surface's lobes S. Returns the radiance [W/m^2/sr, mean of the channels] of this sample after the
+/// reflection by the Lambert lobe of the photon's place. 0 for a lamp with an extent, a mirror and smooth glass.
 double found_by_path(const RenderScene& scene, const formats::Photon& photon, Vec3 wi, const PathRandom& random) {
   const Vec3 place = vec_of(photon.position);
   const float offset = 4 * Reach(scene.tracer).offset();

@@ -31,11 +31,12 @@ struct SeenLight {
 /// threads.
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons);
 
-/// Caustic light that camera paths find as lone samples, because a narrow lobe sends it on from a lamp without extent,
-/// by part of the picture (pilot_part): mean radiance that samples above `cut` [W/m^2/sr] hold. Each caustic photon
-/// that the camera sees stands for the path back along its direction, which finds the light of a light sample where it
-/// meets the lobe. Photons are as dense as the light, so they show samples that one path in a million finds. Photons
-/// must have directions. Same result for any number of threads.
+/// Light of few very bright samples: a lamp without extent lights a narrow lobe, the lobe lights a matte surface, and
+/// few camera paths that leave this surface meet the lobe. Returns for each part of the picture (pilot_part) the mean
+/// radiance [W/m^2/sr] of the samples that are brighter than `cut`. Each caustic photon that the camera sees represents
+/// the camera path that runs back along its direction and takes a light sample where it meets the lobe. There are many
+/// photons where there is much light, so they show samples that one path in a million finds. Photons must have
+/// directions. Same result for any number of threads.
 std::vector<double> lone_light(const RenderScene& scene, const CameraView& view, const PhotonView& photons, double cut);
 
 }  // namespace tempolux

@@ -20,7 +20,7 @@ constexpr int kShares = 12;           ///< steps of the share of samples below 1
 
 double share_of(int step) { return std::exp2(-step / 4.0); }
 
-/// Error and work of other numbers than those asked for.
+/// Error and work of a picture that takes other numbers of samples, light paths and rays than AskedPicture.
 class Spread {
  public:
   Spread(const RoughFrame& rough, const AskedPicture& asked)

@@ -18,7 +18,7 @@ double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t phot
 
 /// Sides of the boxes, in pixels, over which an error is seen: those of tests/bench/steady.py.
 inline constexpr double kSeenBoxes[] = {1, 5, 15};
-/// Squared errors of these boxes together over that of single pixels (docs/methods/ways.md).
+/// Sum of the squared errors of all these boxes over the squared error of single pixels (docs/methods/ways.md).
 struct Seen {
   static constexpr double kSamples = 1.24, kRecords = 2.1;  ///< of filtered samples and of records, measured
   static double independent() {                             ///< of independent samples: 1 + 1/25 + 1/225
@@ -29,7 +29,8 @@ struct Seen {
   static double smooth() { return double(std::size(kSeenBoxes)); }  ///< of what differs little over 15 pixels
 };
 
-/// A filtered picture with a map of caustic photons, with the samples that the wish's pixel error asks for.
+/// The work and the error of a filtered picture with a map of caustic photons, if it takes the samples that the wish's
+/// pixel error asks for.
 struct AskedPicture {
   double pixels = 0;        ///< of the picture
   double sample_work = 0;   ///< shadow rays of one sample

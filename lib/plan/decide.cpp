@@ -27,7 +27,7 @@ constexpr std::size_t kFewestStates = 3;
 /// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
-// Stages by which reasons are found again.
+// Reasons of decisions are stored under these stages (Reason::stage).
 constexpr const char* kRecordsReason = "irradcache-build records";
 constexpr const char* kMovingReason = "photon-trace --map dynamic";
 constexpr const char* kSplitReason = "photonmap-split";
@@ -36,13 +36,14 @@ std::string words(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+/// Kinds of photons that surfaces of these materials, and media, can need: Decisions::kinds before a way is chosen.
 std::string kinds_of(const MaterialFacts& materials, bool media) {
   std::string kinds = !materials.lambert ? "" : materials.other ? "caustic,indirect" : "indirect";
   if (media) kinds += kinds.empty() ? "volume" : ",volume";
   return kinds;
 }
 
-/// Sets the decisions about indirect light so that they suit every measured frame.
+/// Sets the decisions about indirect light: the way that is best for all measured frames together, and its numbers.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   d.photon_paths = 0;
   for (const Look& look : looks) d.photon_paths = std::max(d.photon_paths, look.paths);
@@ -188,15 +189,16 @@ bool may_share_static(const PlannedSegment& segment, const Wish& wish, bool medi
   return segment.states().size() >= kFewestStates && !media && wish.moving != "anew";
 }
 
-/// Mean number of pictures that share the light paths of a photon map. The paths of the static scene are traced a
-/// second time to find those that movers touch.
+/// Mean number of pictures that share the light paths of a photon map. If the light of the static scene is shared, its
+/// paths are traced twice, the second time to find the paths that movers touch; so the number of pictures is halved.
 double pictures_of_a_map(const PlannedSegment& segment, const Wish& wish, bool media) {
   const auto pictures = double(segment.pictures().size()), states = double(segment.states().size());
   return std::max(1.0, may_share_static(segment, wish, media) ? pictures / 2 : pictures / states);
 }
 
-/// If the light of the static scene is shared, each state gathers further records where movers matter: at least
-/// kLeastRecords, and about as many again as its part of the static ones.
+/// How the pictures of the segment share light. If they share the light of the static scene, each state of light
+/// gathers further records where movers matter: at least the share kLeastRecords of a picture's records, and as many
+/// again as its part of the static records.
 Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, const FramePilot& pilot) {
   Sharing sharing{.pictures = pictures_of_a_map(segment, wish, media)};
   if (segment.views().size() < 2) return sharing;
@@ -207,7 +209,7 @@ Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, 
   return sharing;
 }
 
-/// What pilots found in the frames `d.looked`.
+/// The results of the pilots in the frames `d.looked`, and what later pilots reuse of them.
 struct LookedAt {
   StaticTree tree;
   std::unique_ptr<FramePilot> middle;

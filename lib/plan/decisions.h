@@ -14,9 +14,13 @@
 
 namespace tempolux {
 
+/// The presets: draft has more noise and takes less time (with_preset).
 enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
+/// How the frames of a range are made. frames: each frame is rendered. walkthrough: key frames are rendered, and frames
+/// between them are warped. automatic: walkthrough in segments where warping pays. preview: indirect light from the
+/// photons of many frames. still: while the camera stands, only pixels that change are sampled.
 enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview, still };
 inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview", "still"};
 
@@ -27,12 +31,12 @@ std::optional<Enum> named(const char* const (&names)[n], const std::string& name
   return found == std::end(names) ? std::nullopt : std::optional(Enum(found - std::begin(names)));
 }
 
-/// Most frames over which a preview's elements collect photons: before, at and after a frame.
+/// Largest number of frames from which an element of a preview collects photons: the frame, 16 before and 16 after it.
 inline constexpr int kPreviewWindow = 33;
 
-/// Photons of a preview, chosen by what a viewer sees (make measure).
+/// The number of photons of a preview that `make measure` found: with it a viewer sees noise in few enough pixels.
 struct Measured {
-  std::uint64_t photons = 0;  ///< of a frame
+  std::uint64_t photons = 0;  ///< light paths of a frame
   std::string because;        ///< what was measured, in words
 };
 

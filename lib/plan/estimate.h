@@ -18,13 +18,13 @@ struct StageEstimate {
   double bytes = 0;  ///< of each file that it writes
 };
 
-/// What one command of a stage costs.
+/// The cost of one command of a stage.
 struct StageCost {
   double cpu_s = 0, memory = 0;  ///< CPU seconds; bytes
 };
 using StageCosts = std::map<std::string, StageCost, std::less<>>;  ///< by StageInfo::folder
 
-/// The costs in the table of stages, for pictures of this size: what is said before anything is measured.
+/// The costs in the table of stages (kStages), for pictures of this size. They are shown until costs are measured.
 StageCosts table_costs(int width, int height);
 
 /// y2 (x / x2)^k: the power law through (x1, y1) and (x2, y2), 0 < x1 < x2, at x. It extrapolates work y measured at

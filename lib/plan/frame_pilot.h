@@ -29,10 +29,10 @@ struct SceneSource {
 /// At most 16 of `frames`, evenly spaced: a bound of the time that looking around takes.
 std::vector<int> spread(const std::vector<int>& frames);
 
-/// The result of a rough frame: the ways to light, the best first, and the light paths of a photon map.
+/// The result of a rough frame.
 struct Look {
-  std::vector<Way> ways;
-  std::uint64_t paths = 0;
+  std::vector<Way> ways;    ///< the ways to light, the best first
+  std::uint64_t paths = 0;  ///< light paths that a photon map needs (photon_paths)
   /// True if every way with this method was measured.
   bool knows(IndirectMethod method) const {
     return std::ranges::all_of(ways, [&](const Way& way) { return way.method != method || way.measured; });
@@ -42,6 +42,7 @@ struct Look {
 /// How the pictures of a segment share light (Order::pictures, Order::records).
 struct Sharing {
   double new_share = 0;  ///< Decisions::new_share
+  /// Number of pictures that share photons and points, and the share of its records that a picture pays for (Order).
   double pictures = 1, records = 1;
   double least_hidden = kAuditLimit;  ///< RoughOptions::least_hidden
 };
@@ -54,17 +55,17 @@ class FramePilot {
 
   /// Renders a rough frame of `places` places. It ends early once enough(look) is true.
   Look look(int places, const Sharing& sharing, const std::function<bool(const Look&)>& enough);
-  PreviewPilot preview();
-  double kernel();
-  SplitChoice split();
-  MovingPilot moving();
+  PreviewPilot preview();  ///< pilot_preview(), with aimed photons
+  double kernel();         ///< pilot_kernel(): photons below the best Gaussian of a light texture
+  SplitChoice split();     ///< choose_split() by a pilot
+  MovingPilot moving();    ///< pilot_moving()
   /// Mean share of a picture of the segment that the picture before does not show.
   double new_share(const PlannedSegment& segment) const;
 
  private:
   const Lights& aimed();
 
-  std::string kinds_;
+  std::string kinds_;  ///< kinds of photons that the segment may need
   const Wish& wish_;
   SceneFrame frame_;
   EmissionTable table_;

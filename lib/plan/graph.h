@@ -38,7 +38,7 @@ struct Graph {
   std::map<std::string, std::size_t> by_name;  ///< index into `files` of every file, including those in `beside`
   std::vector<PlanFile> states;                ///< view files, majorants
   std::map<int, std::string> pictures;         ///< the picture that each frame asked for shows
-  std::optional<double> exposure;              ///< of the previews, stops; empty: that of the first picture
+  std::optional<double> exposure;              ///< of the previews, stops; empty: chosen for the first picture
   std::vector<std::string> intervals;          ///< of a walkthrough, in frame order
   std::map<int, std::string> errors;           ///< result of aqm-compare for each frame of the report
   /// For each file in `errors`: the statistics of all commands that lead to the judged picture.

@@ -9,7 +9,7 @@
 
 namespace tempolux {
 
-/// State of an input file or folder. A folder's hash is that of the names in it.
+/// State of an input file or folder. The content of a folder is the list of the names in it.
 struct InputStamp {
   std::uint64_t size = 0, inode = 0;
   std::int64_t modified_ns = 0, changed_ns = 0;  ///< of the content and of the inode

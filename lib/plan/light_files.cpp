@@ -9,6 +9,7 @@
 namespace tempolux {
 namespace {
 
+/// Adds --importance: the segment's view file, by which photons are aimed and points spread, or none.
 void add_view(GraphBuilder& g, int frame, Command& c) {
   const PlannedSegment& s = g.segment(frame);
   if (s.decisions.view.empty()) c.option("--importance none");
@@ -21,6 +22,7 @@ std::string majorants_file(GraphBuilder& g, int frame) {
                 [&] { return g.add_state("majorants", s.first, g.majorants(s.first, s.last)); });
 }
 
+/// The options that decide which photons are traced: the number of light paths and the kinds.
 std::string photon_words(const GraphBuilder& g, int frame) {
   const Decisions& d = g.decided(frame);
   return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
@@ -87,6 +89,7 @@ void add_points(GraphBuilder& g, int lit, Command& c) {
   c.file("--high", beside(low, ".high.irradpoints"));
 }
 
+/// The options of the commands that gather records: picture size, gather rays and the options of the wish.
 std::string record_words(const GraphBuilder& g, int lit) {
   const std::string rays =
       has_word(g.wish.records, "--rays") ? "" : " --rays " + std::to_string(g.decided(lit).record_rays);
@@ -122,6 +125,7 @@ bool over_time(const GraphBuilder& g, int lit) {
   return g.decided(lit).moving == MovingMethod::time && g.segment(lit).views(lit).size() == 1;
 }
 
+/// Records that are gathered for these pictures of one state of light, without static records.
 std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.pinholes(pictures)};
   add_points(g, lit, c);
@@ -129,6 +133,7 @@ std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pic
   return g.add(stage_in("cache"), pictures.front(), c);
 }
 
+/// Static records updated for these pictures of one state of light, and records gathered where movers matter.
 std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.pinholes(pictures)};
   c.file("--update", static_records(g, pictures.front()));
@@ -147,6 +152,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
 
 std::string record_file(GraphBuilder& g, int frame);
 
+/// Records of a state of light that follow from the records of the state before it in the segment.
 std::string kept_records(GraphBuilder& g, int lit) {
   const PlannedSegment& s = g.segment(lit);  // the .radsamples file stores its borders
   Command c{
@@ -169,7 +175,7 @@ std::string record_file(GraphBuilder& g, int frame) {
   });
 }
 
-constexpr int kReach = kPreviewWindow / 2;
+constexpr int kReach = kPreviewWindow / 2;  ///< largest number of frames of a window on each side of its frame
 
 /// The photon map of a frame of a preview. Each frame has its own map even if other frames have the same light, so
 /// that windows collect different photons. A segment with one state of light has as many maps as a window has frames.
@@ -187,6 +193,7 @@ std::string width_words(const GraphBuilder& g, int frame) {
   return words.str();
 }
 
+/// The photons of one frame of a preview, counted by element.
 std::string counts(GraphBuilder& g, int frame) {
   const PlannedSegment& s = g.segment(frame);
   Command c{

@@ -23,9 +23,10 @@ const Way* find_way(const std::vector<Way>& ways, IndirectMethod method, bool ma
   return found == ways.end() ? nullptr : &*found;
 }
 
-/// The least ratio of scores at which a segment departs from the shot's way. error: standard error of its logarithm.
+/// Score of the shot's way over the score of the segment's best way above which the segment departs from the shot's
+/// way. error: standard error of the logarithm of this ratio.
 double departure(double error) { return kDeparture * std::exp(2 * error); }
-/// The error of a single frame is not known and taken to be as large as kDeparture.
+/// Standard error that is assumed if only one frame was measured: then its spread over frames is not known.
 const double kErrorOfOne = std::log(kDeparture);
 
 }  // namespace

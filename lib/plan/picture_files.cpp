@@ -13,8 +13,9 @@ namespace {
 /// The audit traces this share of the frame's rays. With its look-ups an audit takes less than 3 % of a run.
 constexpr const char* kAudit = "--audit 0.02";
 
-/// The pixel error of the frame that gives the pixels that stay, over that of other frames: 3.4 times the samples.
-/// Every frame shows its noise, so the noise must not be seen (docs/methods/still.md).
+/// METHOD=still: pixel error of the frame that gives the kept pixels, over the pixel error of other frames. With it the
+/// frame takes 3.4 times the samples. All frames show the noise of this frame, so its noise must not be seen
+/// (docs/methods/still.md).
 constexpr double kFinerStill = 0.25;
 
 /// The options of a frame's pixels, with `finer` times the pixel error.
@@ -25,8 +26,9 @@ std::string pixels_with(const GraphBuilder& g, int frame, double finer) {
   return words.str();
 }
 
-/// METHOD=still: the frame that gives other frames the pixels that stay: the middle of the shot. Empty if the camera of
-/// `frame` is another one there, if it has blur, or if the frames need different kinds of files.
+/// METHOD=still: the frame that gives `frame` the kept pixels, which is the frame in the middle of the shot. Empty if
+/// `frame` has another camera than the middle frame, if lens or shutter blur it, or if the two frames read different
+/// kinds of light files.
 std::optional<int> still_frame(const GraphBuilder& g, int frame) {
   if (g.wish.method != FrameMethod::still || g.plan.media) return {};
   const std::optional<int> middle = g.plan.middle();
@@ -40,8 +42,8 @@ std::optional<int> still_frame(const GraphBuilder& g, int frame) {
   return there.picture;
 }
 
-/// A frame before the filter (stage raw), or without one. With METHOD=still it takes the pixels that stay from another
-/// frame; before the filter it is this frame where both show the same picture.
+/// A sampled frame, which is filtered later (stage raw) or not at all. With METHOD=still it takes kept pixels from the
+/// frame in the middle of the shot. If both frames have the same light, a raw frame is the middle frame itself.
 std::string sampled_picture(GraphBuilder& g, const StageInfo& stage, int frame, const std::string& words,
                             const std::string& channels) {
   Command c = frame_command(g, frame, pixels_of(g, frame) + words, channels);

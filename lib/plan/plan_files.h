@@ -11,7 +11,8 @@
 
 namespace tempolux {
 
-/// What commands say besides GraphFile::words, and what they cost. Names may hold any byte.
+/// The options of commands that are not part of GraphFile::words, and the costs of the commands. Names may hold any
+/// byte.
 struct PlanContext {
   std::string scene;                 ///< the scene's file, an absolute name
   std::vector<std::string> options;  ///< of all stages that read the scene

@@ -10,12 +10,13 @@
 
 namespace tempolux {
 
-/// The words of the user that a stage's command gets besides its own, each kind with those before it.
+/// Which of the user's options the command of a stage gets besides its own options. Each value includes the options of
+/// the values before it.
 enum class Sees : std::uint8_t {
-  files,   ///< none: it reads files alone
-  scene,   ///< the scene, and the options of all that read it
-  drawn,   ///< the seed
-  camera,  ///< the camera
+  files,   ///< no option: the command reads files of earlier stages only
+  scene,   ///< the scene, and the options of all tools that read a scene
+  drawn,   ///< the seed: the command draws random numbers
+  camera,  ///< the camera and its lens
 };
 
 /// The part of the work that a stage belongs to.
@@ -25,23 +26,23 @@ inline constexpr const char* kParts[] = {"photons", "points", "cache", "frames",
 /// A stage makes one kind of file.
 struct StageInfo {
   std::string_view folder;   ///< in OUT, holds its files
-  std::string_view name;     ///< as in plan.json
-  std::string_view command;  ///< the program that runs, and its first words
+  std::string_view name;     ///< name of the stage in plan.json
+  std::string_view command;  ///< the program, and the subcommand where it has one
   Sees sees;
   /// Options that name what the command writes. @ stands for FOLDER/FRAMES-KEY, % for the first file. "":
   /// pipelines/stages.mk has the rule.
   std::string_view outputs;
   std::string_view extensions;  ///< of its files, separated by blanks; later stages read the first
   Part part;
-  std::string_view words;  ///< for people
-  /// Cost of one command for the demo at 640x360, of smoke for a room of 1 m: CPU seconds, and the largest memory in
-  /// MB. What `make estimate` measures replaces it.
+  std::string_view words;  ///< what the stage makes, for people
+  /// Cost of one command: CPU seconds, and the largest resident memory in MB. Measured with the demo at 640x360; the
+  /// cost of smoke with a room of 1 m. A plan shows these figures until `make estimate` has measured its own.
   double cpu_s, memory_mb;
   /// Phases of its statistics whose time grows with the work, separated by commas.
   std::string_view work;
 
   std::string_view tool() const { return command.substr(0, command.find(' ')); }
-  /// Frames that a user may ask for; a frame of `still` serves other frames alone.
+  /// True if the stage makes pictures that a user may ask for. A picture of stage `still` only serves other pictures.
   bool makes_pictures() const { return part == Part::frames && extensions == ".exr" && folder != "still"; }
 };
 

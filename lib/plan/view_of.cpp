@@ -29,8 +29,9 @@ std::string view_of(const std::vector<int>& frames, const std::string& kinds, co
     const EmissionTable table = source.emission(frame.frame);
     radius = std::max(radius, table.sphere_radius);
     look_around(Tracer(frame, tree), camera, wish.width, wish.height, around);
-    // Only photons of distant light are aimed, and only those of several lights have shares. Else the aim serves the
-    // points alone, and the first picture decides whether the scene is large enough for an aim.
+    // Photons are aimed if they come from distant light, and they are shared out if there are several lights. Without
+    // both, spheres only serve the points. Then the first picture decides whether the scene is large enough for
+    // spheres.
     if (number == frames.front() && !frame.scene->has_distant_light() && !has_several_lights(frame, table) &&
         !seen_spheres(around.places, radius).worth_aiming)
       return "";

@@ -206,8 +206,8 @@ struct DirectLight {
     });
     return Rgb(sum / double(samples));
   }
-  /// Calls each(sample, random bits for media on the shadow ray) for those of the stratified light samples that can
-  /// light the point.
+  /// Draws `samples` stratified light samples. Calls each(sample, random bits for media on the shadow ray) for each
+  /// sample that can light the point.
   template <class Each>
   void for_samples(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random,
                    const Each& each) const {

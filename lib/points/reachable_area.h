@@ -17,10 +17,10 @@ class Reach {
  public:
   explicit Reach(const Tracer& tracer);
 
-  /// True if nothing obstructs the straight line between the two places, or if nothing obstructs the path that runs in
-  /// the tangent plane of `from` and then straight down to `to`. The straight line fails where a surface bends away,
-  /// the other path where a surface bends up. Both paths start and end 2 offset() above the surfaces. Normals are unit
-  /// vectors on the lit sides; `to_normal` may be wrong by 1e-2.
+  /// Tests two ways from one place to the other: the straight line, and the path that runs in the tangent plane of
+  /// `from` and then straight down to `to`. True if nothing obstructs one of the two. The straight line is obstructed
+  /// where a surface bends away, the other path where a surface bends up. Both paths start and end 2 offset() above the
+  /// surfaces. Normals are unit vectors on the lit sides; `to_normal` may be wrong by 1e-2.
   bool operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const;
   /// True if nothing obstructs the straight line between two places above surfaces.
   bool free(Vec3 from, Vec3 to) const;

@@ -80,7 +80,7 @@ class AdaptiveFrame {
   ParallelArray<BrightestSamples> brightest_;  ///< empty unless outliers are spread
 };
 
-/// Repeats a pass with other random numbers if the pixel is one of those that are rendered twice.
+/// Repeats a pass with other random numbers if the pixel is rendered twice (NoiseCheck).
 void AdaptiveFrame::take_again(const PixelPass& pass) {
   const std::uint32_t slot = check_.slot(pass.x, pass.y);
   if (slot == kNone || !shown(pass.pixel)) return;
@@ -178,8 +178,8 @@ void AdaptiveFrame::note_confirmed(std::size_t pixel, const Layers& before) {
     frame_.mean.confirmed[pixel] |= std::uint8_t(1 << int(claim.layer));
 }
 
-/// Noise in codes, or its standard error if that is larger: one outlier among the pixels that are rendered twice can
-/// make the measured noise 0 +- 10.
+/// Noise in codes, or its standard error if the error is larger: one outlier among the pixels that are rendered twice
+/// can make the measured noise 0 +- 10.
 double AdaptiveFrame::noise_left() const { return std::max(frame_.noise.image.codes, frame_.noise.image.codes_error); }
 
 /// Noise in codes at which sampling stops: seen_error, or, if this is larger, the noise of records and photons with

@@ -21,7 +21,7 @@ struct FrameOptions {
   /// Render two halves for a reference. They are independent of each other and of frames without halves of any seed.
   bool halves = false;
   /// > 0: first take `samples` in each pixel, then more in pixels whose error is larger than this
-  /// (lib/render/adaptive_frame.h; the unit is that of allowed_error). 0: take no more.
+  /// (lib/render/adaptive_frame.h; relative, as in allowed_error). 0: take no more.
   double pixel_error = 0;
   /// > 0: take further samples, distributed as pixel_error asks for, until the noise is below this, in codes
   /// (FrameNoise). Needs pixel_error.

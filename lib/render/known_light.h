@@ -54,13 +54,13 @@ class KnownLight {
     return widest && widest->has_lamp_light(nullptr, leg, lamp_distance);
   }
   int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
-  /// Is there an environment or an emitting surface, which a ray can meet? If not, and if indirect and caustic light
+  /// True if rays can meet a light: an environment or an emitting surface. If false, and if indirect and caustic light
   /// are known at a place, no ray is sent from the Lambert lobe, because it would find nothing.
   bool lights_are_met = true;
-  /// Do camera paths fork at the first surface with two lobes (a Lambert lobe under gloss, or the reflection and the
-  /// transmission of smooth glass), so that both lobes are followed? Gloss and glass reflect about 4 %. Without a fork
-  /// one path in 25 follows the reflection, and its pixel is too bright (or too dark before a bright sky). Without
-  /// known light both branches are whole paths, and a fork costs as much as it gains.
+  /// True if camera paths fork at the first surface with two lobes and follow both: a Lambert lobe under gloss, or the
+  /// reflection and the transmission of smooth glass. Gloss and glass reflect about 4 %. Without a fork one path in 25
+  /// follows the reflection, and its pixel is too bright (or too dark before a bright sky). False without known light:
+  /// both branches would be whole paths, and a fork would cost as much as it gains.
   bool forks() const { return indirect_by() != IndirectBy::paths; }
   /// How indirect light is read.
   IndirectBy indirect_by() const {

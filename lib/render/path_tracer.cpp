@@ -32,10 +32,12 @@ struct PathState {
   Inside inside;             ///< the glass in which `ray` runs
   LastScatter last;          ///< the last vertex and its pdf, for MIS
   std::uint32_t bounce = 0;  ///< number of events
-  bool forked = false;       ///< both lobes of a surface have been followed: the path forks once
-  bool matte = false;        ///< there was an event D; the fields below concern the last one
-  LightKinds known{};        ///< light at its place that was added; after `bright` the next Lambert lobe adds the rest
-  bool specular = false;     ///< events S followed
+  bool forked = false;       ///< true if the path has forked, so that both lobes of a surface were followed
+  bool matte = false;        ///< true after an event D; the fields below concern the last event D
+  /// Light at the place of that event that was added already. With `bright`, light of bright points was sampled there,
+  /// and the next Lambert lobe that the path meets adds only the remaining share.
+  LightKinds known{};
+  bool specular = false;  ///< true if events S followed
   /// True until the path has left a surface or a medium where lights are sampled. Until then plates of glass refract
   /// the path; afterwards it passes them straight, as light samples do.
   bool refracted = true;
@@ -44,7 +46,8 @@ struct PathState {
   /// last event D, if no glossy event widened the path; 0 if it has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
-  /// Width of the lobe from which `ray` comes if light of spots beside lamps was sampled for this lobe; else 0.
+  /// Width (BrightPoints::width_of) of the lobe that sent `ray`, if light of spots was sampled for this lobe; else 0. A
+  /// spot is the bright place on a surface close to a lamp (BrightPoints::lamp_spot).
   float divided = 0;
   /// Length [m] of the path's leg before the last vertex, times the widths of the lobes at both ends, if light of spots
   /// was sampled for it; else 0.
@@ -57,8 +60,7 @@ struct PathState {
   bool light_counts() const { return !(matte && specular && known.has(LightKind::caustic)); }
 };
 
-/// A surface that a path has reached, and which light that arrives there was already added from records, points and
-/// photons.
+/// A surface that a path has reached, and the kinds of light there that were added from records, points and photons.
 struct Vertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
@@ -68,13 +70,15 @@ struct Vertex {
   /// Length [m] of the leg to this vertex times PathState::divided. If it is above 0, the light of lamps close to this
   /// vertex is divided (BrightPoints).
   float divided_leg = 0;
-  /// For which lobes light of spots beside lamps is sampled here: from spots' Lambert lobes to the Lambert lobe, from
-  /// their lobes S to the Lambert lobe, and to the lobes S.
+  /// For which lobes light of spots is sampled here. spots: light that the Lambert lobe of a spot sends to the Lambert
+  /// lobe here. spots_of_gloss: light that the lobes S of a spot send to the Lambert lobe here. spots_in_gloss: light
+  /// that the lobes S here receive from spots.
   bool spots = false, spots_of_gloss = false, spots_in_gloss = false;
-  float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
+  /// Probability with which the path follows a lobe, over the probability with which Bsdf::sample() draws the lobe.
+  float times_diffuse = 1, times_specular = 1;
 
-  /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection and
-  /// times_specular that of the transmission.
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection, and
+  /// times_specular is the factor of the transmission.
   void fork(float probability) {
     forks = true;
     times_diffuse = 1 / probability;
@@ -82,8 +86,8 @@ struct Vertex {
   }
 };
 
-/// A surface in the scene that stored light belongs to, with its normals on the lit side: the surface itself, or
-/// where it lies at another moment.
+/// The place at which stored light is looked up for a surface, with its normals on the lit side. At a moment of a
+/// shutter it is the same place of the surface at the frame's time; else it is the surface itself.
 class StoredAt {
  public:
   StoredAt(const RenderScene& scene, const ShadingPoint& x)
@@ -179,8 +183,8 @@ void EyeTracer::go_on(const Ray& ray, PathState& state) const {
   ++state.bounce;
 }
 
-/// Draws the next ray and follows it; u_lobe chooses the event, D or S. times: probability of the lobe over that of the
-/// Bsdf. Returns false if the path ends.
+/// Draws the next ray and follows it; u_lobe chooses the event, D or S. times: Vertex::times_diffuse or times_specular.
+/// Returns false if the path ends.
 bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& state) const {
   const ShadingPoint& x = at.x;
   const Scattered event(x, u_lobe, state.random.get2(state.bounce, Purpose::scatter));
@@ -317,8 +321,8 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   if (state.path.after(false).only_specular()) result.mirrored += float(channel_mean(arriving * glossy));
 }
 
-/// Decides for which lobes of a surface light of lamps close to other surfaces is sampled. At another moment of the
-/// shutter spots lie elsewhere than those of the known light, and gloss samples none.
+/// Decides for which lobes of a surface light of spots is sampled (Vertex::spots). The known light has the spots of the
+/// frame's time. At another moment of the shutter spots lie elsewhere, so gloss samples none.
 void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
   if (!known_ || (!known_->lamp_spots && !known_->gloss_spots)) return;
   at.spots = at.known.has(LightKind::indirect) && !at.known.has(LightKind::lamps);
@@ -328,8 +332,8 @@ void EyeTracer::choose_spots(Vertex& at, const PathState& state) const {
   at.spots_in_gloss = gloss && state.path.sharp() && samples_specular(at, state);
 }
 
-/// Takes one sample of the light of lamps close to other surfaces: what records leave out, if these are
-/// KnownLight::lamp_spots, and what gloss here or there reflects.
+/// Takes one sample of the light of spots. Adds the light that records leave out, if `spots` are
+/// KnownLight::lamp_spots, and the light that lobes S of the spot or of this surface reflect.
 void EyeTracer::sample_spots(const BrightPoints& spots, const Vertex& at, const PathState& state,
                              const PixelRandom& random, Layers& result) const {
   const ShadingPoint& x = at.x;
@@ -366,8 +370,9 @@ void EyeTracer::sample_spots(const BrightPoints& spots, const Vertex& at, const 
   if (glossy.after(false).only_specular()) result.mirrored += float(channel_mean(arriving * of_gloss));
 }
 
-/// Samples light at a surface; at the first matte surface with effort_.lit samples, which are added to the part `lit`.
-/// Samples of the sun hardly differ from each other. So there is one per camera ray, in the part that the path adds to.
+/// Samples light at a surface. At the first matte surface takes effort_.lit samples, which are added to the part `lit`.
+/// Samples of the sun hardly differ from each other. So there is one sample of the sun per camera ray, which is added
+/// to the part of the path.
 void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
   const bool first_matte = state.path.sharp() && at.x.bsdf.has_diffuse();
   const auto each = [&](const auto& sample) {

@@ -147,7 +147,7 @@ struct RayCounts {
   std::uint64_t camera = 0, bounce = 0, shadow = 0;
   std::uint64_t lookups = 0;      ///< first Lambert lobes whose indirect light was known (KnownLight::indirect)
   std::uint64_t gathered = 0;     ///< first Lambert lobes whose indirect light a gather ray had to estimate
-  std::uint64_t points_read = 0;  ///< hits whose light was that of a point (KnownLight::point_light)
+  std::uint64_t points_read = 0;  ///< hits whose light was read from a point (KnownLight::point_light)
   std::uint64_t onward = 0;       ///< cost of the rays of PathParts::onward: 2 for each of onward_bounce, 1 for others
   std::uint64_t onward_bounce = 0;  ///< nearest hits of PathParts::onward
   RayCounts& operator+=(const RayCounts& o) {
@@ -228,8 +228,8 @@ struct EyeRay {
   Hit first;
   RayCone cone;
 };
-/// The same by parts. MIS weights are those of one sample of each part for any `effort`, so the mean of each part over
-/// its samples has no bias.
+/// The same by parts. MIS weighs samples as if each part had one sample, whatever `effort` is, so the mean of each part
+/// over its samples has no bias.
 PathParts trace_eye_parts(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random,
                           const KnownLight* known, RayCounts& counts, const PathEffort& effort);
 

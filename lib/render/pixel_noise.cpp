@@ -62,7 +62,7 @@ PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
   if (!options.mask.empty()) look_around_mask();
 }
 
-/// Sets looked_at_: the pixels of the mask, those around them, and those of the lattice.
+/// Sets looked_at_: the pixels of the mask, the pixels around them, and the pixels of the lattice.
 void PixelNoise::look_around_mask() {
   const int width = view_.width(), height = view_.height();
   looked_at_.assign(options_.mask.size(), 0);
@@ -136,10 +136,11 @@ struct PixelNoise::Around {
 
 /// Decides on each part separately. The variance of the part lit comes from the difference of the pixels' halves, which
 /// includes the gain by stratification; with single samples it is the variance between pixels. The variance of the part
-/// onward is that of single samples. Both are the mean of two variances, over the 24 closest and over 80 pixels. If one
-/// sample in 12 finds a window, all 96 samples of the 24 pixels miss the window at one place of 4000, and without the
-/// 80 pixels such a place would stay dark. If edges are given, pixels at edges are compared with pixels at edges only,
-/// and others with others: at an edge, samples also differ by the surface that they see.
+/// onward is the variance of single samples. Each of the two is the mean of a variance over the 24 closest pixels and a
+/// variance over 80 pixels: if one sample in 12 finds a window, all 96 samples of the 24 pixels miss the window at one
+/// place of 4000, and without the 80 pixels such a place would stay dark. If edges are given, a pixel at an edge is
+/// compared with pixels at edges only, and a pixel inside a surface with pixels inside surfaces only, because at an
+/// edge samples also differ by the surface that they see.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;

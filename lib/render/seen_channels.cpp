@@ -34,7 +34,7 @@ std::optional<Scattered> sharp_way(const ShadingPoint& shading) {
   return std::nullopt;
 }
 
-/// Hash of the objects on a path: `id` of those so far, and the next one.
+/// Hash of the objects on a path. `id`: hash of the objects so far, to which the next object is added.
 std::uint32_t mixed(std::uint32_t id, std::uint32_t next) {
   const std::uint32_t hash = (id ^ (next + 0x9e3779b9u)) * 0x85ebca6bu;
   return hash ^ (hash >> 15);

@@ -71,7 +71,7 @@ class Shutter {
   double motion_px_ = 0;
 };
 
-/// What a sample sees: the scene and the view of its moment, or those of the frame without a shutter.
+/// What a sample sees: the scene and the view at the moment of the sample; without a shutter, at the frame's time.
 struct SeenNow {
   const RenderScene& scene;
   const CameraView& view;

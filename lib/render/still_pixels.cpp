@@ -55,9 +55,9 @@ FirstSamples first_samples(const CameraSampler& now, const CameraSampler& before
   return first;
 }
 
-/// What a lone sample adds to a pixel's mean difference beyond the mean part of the other samples.
+/// The sample that changes a pixel's mean difference most.
 struct Lone {
-  Layers excess;
+  Layers excess;    ///< its part of the mean difference, minus the mean part of the other samples
   double size = 0;  ///< |radiance| of the excess
 };
 

@@ -9,7 +9,7 @@
 
 namespace tempolux {
 
-/// The pixels of a frame that are kept from a moment before, and how much they change.
+/// The pixels of a frame that are kept from a frame of another moment, and how much they change.
 struct StillPixels {
   std::vector<std::uint8_t> anew;  ///< by pixel: 1 if the pixel must be sampled anew, 0 if it is kept
   std::vector<Layers> change;      ///< by pixel, of kept pixels: radiance now minus radiance before [W/m^2/sr]
@@ -17,8 +17,9 @@ struct StillPixels {
   double share_anew() const;  ///< share of the pixels that must be sampled anew
 };
 
-/// Compares the first samples of a frame with samples of a moment before, taken with the same random numbers. Where
-/// nothing that a sample meets has changed, both samples are equal, and their difference has no noise. So
+/// Compares the first samples of a frame (`now`) with samples of another moment (`before`, which may also be a later
+/// frame) that are taken with the same random numbers. Where nothing that a sample meets has changed, both samples are
+/// equal, and their difference has no noise. So
 ///     radiance now = radiance before + mean of the differences
 /// has no bias, and little noise where little changes.
 ///

@@ -16,11 +16,11 @@ inline constexpr float kMaxCoordinate = 1e15f;
 /// "FILE: nodes[3] "Box"", for messages.
 std::string node_place(const Scene& scene, std::size_t node);
 
-/// Decides which primitives are instanced instead of copied: rigid, opaque primitives that never emit, occur at least
-/// twice, and have at least 4096 triangles, or at least 256 if all copies together would have 2^18. An occurrence is
-/// copied all the same if rounding in the instance's space would be visible: if the condition number of its transform
-/// is above 30 (one axis is 21 times as long as the others), or if it is farther from the world's origin than 256 times
-/// its size.
+/// Decides which primitives are instanced instead of copied. A primitive is instanced if it is rigid and opaque, never
+/// emits, and occurs at least twice. It must also have at least 4096 triangles, or at least 256 if all copies together
+/// would have 2^18. An occurrence is copied all the same if rounding in the instance's space would be visible: if the
+/// condition number of its transform is above 30 (one axis is 21 times as long as the others), or if it is farther from
+/// the world's origin than 256 times its size.
 class Sharing {
  public:
   explicit Sharing(const Scene& scene);

@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// What shading needs at a hit; scene space.
+/// The surface at a hit, with all that shading needs of it; scene space.
 struct SurfacePoint {
   Vec3 position;          ///< m; interpolated from the triangle's corners, so it is exact to a few ulp
   Vec3 normal_geometric;  ///< unit, towards the triangle's front

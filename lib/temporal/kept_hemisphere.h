@@ -52,7 +52,7 @@ struct SampleUnits {
 void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance);
 /// Multiplies a cell's radiance by a ratio, per channel, and stores the result with keep_radiance.
 void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio);
-/// What a gather ray has found.
+/// The light that a gather ray has found, and where it comes from.
 struct FoundByRay {
   Rgb radiance;    ///< W/m^2/sr
   float distance;  ///< m; infinite if the ray has met nothing

@@ -27,7 +27,8 @@ struct LightChanges {
   /// even if none of their cells is traced.
   bool divided = false;
 };
-/// Compares the points, the moving surfaces and the materials of `scene` with those that `kept` was gathered from.
+/// Compares the points, the moving surfaces and the materials of `scene` with the points, surfaces and materials from
+/// which `kept` was gathered.
 /// explicitly: records sample light explicitly in this frame (GatherOptions::bright).
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept, bool explicitly);
 

@@ -290,8 +290,9 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   kept.point_light.clear();
 }
 
-/// Fills the store with the kept records. A record begins to fade if at its place the sum of the weights of all earlier
-/// records, except those that fade, is larger by 1 than when the record was placed.
+/// Fills the store with the kept records. A record begins to fade if other records cover its place in the meantime: if
+/// the sum of the weights of all earlier records that do not fade is larger by 1 than it was when the record was
+/// placed.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = stored_values(k.record);

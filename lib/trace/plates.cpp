@@ -16,7 +16,7 @@ constexpr double kLargestTilt = 5e-4;    ///< rad: mean deviation of a face's no
 constexpr double kLargestRim = 0.05;     ///< share of the rim in the area: straight rays are wrong at the rim alone
 constexpr double kSameThickness = 0.05;  ///< unevenness of a face over the thickness, on which only absorption depends
 constexpr double kShadingTilt = 0.01;    ///< of shading normals; normals of 8 bits err by half of it
-constexpr double kFaceCosine = 0.99;     ///< tells faces from the rim; kLargestTilt then decides
+constexpr double kFaceCosine = 0.99;     ///< triangles at this cosine belong to faces, others to the rim
 
 /// Index of the first vertex at the same place, for each vertex. Exporters split the vertices of sharp edges.
 std::vector<std::uint32_t> welded(const Surface& surface) {

@@ -10,8 +10,8 @@ namespace tempolux {
 enum class LightKind : std::uint8_t {
   direct,    ///< from lights, straight or through panes
   caustic,   ///< from lights by events S
-  indirect,  ///< by at least one event D
-  bright,    ///< from bright points, sampled explicitly (BrightPoints)
+  indirect,  ///< from lights by at least one event D
+  bright,    ///< the part of indirect light that comes from bright points and is sampled explicitly (BrightPoints)
   lamps,     ///< from lamps close to surfaces, which records may leave out (KnownLight::lamp_spots)
 };
 

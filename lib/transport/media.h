@@ -10,8 +10,8 @@
 
 namespace tempolux {
 
-/// Random bits for the steps along one ray. `random` and `bounce` are those of the path; `way` distinguishes the rays
-/// of one bounce.
+/// Random bits for the steps along one ray. `random` and `bounce` identify the vertex of the path from which the ray
+/// starts; `way` distinguishes the rays of one vertex (enum Way).
 struct WayBits {
   PathRandom random;
   std::uint32_t bounce, way;  ///< way: below 16
@@ -26,8 +26,8 @@ enum Way : std::uint32_t { way_path = 0, way_shadow = 1, way_shadow_of_medium = 
 /// The direction need not be unit. 1 for a direction of length 0.
 float media_transmittance(const Media& media, const Ray& ray, const WayBits& bits);
 
-/// Share of light that goes straight through a surface (Bsdf::passed_straight). `direction` is that of the ray, of any
-/// length. Black unless the surface is a pane or bounds a plate.
+/// Share of light that goes straight through a surface (Bsdf::passed_straight). `direction`: of the ray, of any length.
+/// Black unless the surface is a pane or bounds a plate.
 Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction);
 
 /// Share of light that arrives along a shadow ray: media_transmittance() times passed_straight() of each pane and

@@ -15,8 +15,9 @@ namespace tempolux::tools {
 /// Empty if the frame's noise is unknown. audit: entries of FrameAudit, if there was an audit.
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit);
 
-/// Joins the noise of a frame's new pixels, a share of all pixels, with that of the frame `from` that gives the others
-/// (--still). Variances are means over pixels. The noise of `from` is that of its own account.
+/// --still: joins the noise of the pixels that were sampled anew with the noise of the frame `from`, which gives the
+/// kept pixels. share_anew: share of the new pixels. Variances are means over pixels. The noise of `from` is read from
+/// its own account.
 void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise);
 
 /// Reports the figures: in --stats, as lines with --verbose, as a warning if `asked` (FrameOptions::seen_error) was not

@@ -31,7 +31,7 @@ struct FrameDescription {
 struct KeptPixels {
   const std::vector<std::uint8_t>& anew;  ///< by pixel: 0 if `from` gives it; empty: no pixel is kept
   const Image& from;
-  const StillPixels* change = nullptr;  ///< what is added to them; null: nothing
+  const StillPixels* change = nullptr;  ///< the change that is added to the kept pixels; null: none
 };
 
 class FrameOutputs {

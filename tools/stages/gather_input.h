@@ -21,7 +21,7 @@ namespace tempolux::tools {
 /// Which light a reader needs from photons or points.
 enum class LightNeeded { all, caustic };
 
-/// What a reader needs from a map of photons.
+/// The photons that a reader needs from a map.
 struct WantedPhotons {
   LightNeeded needed = LightNeeded::all;
   std::string map = "global";  ///< kind of the map

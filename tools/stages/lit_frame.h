@@ -11,17 +11,19 @@
 
 namespace tempolux::tools {
 
-/// Made in steps, in this order: the constructor, build(), guide_sky(), read_light(). A later step may be left out.
+/// A frame of the scene with all that sampling its pixels needs: search trees, lights, and the light that files hold.
+/// It is made in steps, in this order: the constructor, build(), guide_sky(), read_light(). A later step may be left
+/// out.
 class LitFrame {
  public:
   /// Evaluates the scene at a frame. `camera`: a node. The picture has width x height pixels.
   LitFrame(SceneInput& input, int number, int camera, int width, int height);
   LitFrame(const LitFrame&) = delete;
 
-  /// Makes the trees and the lights. `tree` serves all frames of a segment. A reference draws one of all lights at each
-  /// surface, other frames draw suns apart.
+  /// Makes the trees and the lights. `tree` serves all frames of a segment. At each surface a reference draws one of
+  /// all lights; other frames draw a sun and one of the other lights (RenderScene::suns_apart).
   void build(SceneInput& input, StaticTree& tree, bool is_reference = false);
-  /// Gives the lights this guide to the sky; without an argument one that learns from this frame.
+  /// Gives the lights this guide to the sky; without an argument, a guide that learns from this frame.
   void guide_sky(std::shared_ptr<const SkyGuide> guide) { *lights_ = lights_->guided(std::move(guide)); }
   void guide_sky();
   /// Opens the files of the frame's caustic and indirect light.

@@ -22,7 +22,7 @@ struct RenderOptions {
   double pixel_error_of_files = 0.01;  ///< relative error that a pixel may have
   bool half_float = false, keep_outliers = false;
   int width = 640, height = 360;
-  double audit = 0;               ///< share of the frame's camera rays
+  double audit = 0;               ///< rays of the audit over rays of the frame (audit_effort)
   std::uint64_t light_paths = 0;  ///< of add_hidden_light
 
   ExrWriteOptions exr() const { return {half_float, compression == "zip"}; }

@@ -24,8 +24,8 @@ constexpr double kWidth = 128;  ///< width in pixels of the larger sample, at mo
 constexpr int kFewerRays = 4;   ///< of a record
 constexpr std::array kSamples{"small", "large"};
 
-/// How often a stage runs for the requested frames, and sums over its runs of the factors by which work and bytes
-/// exceed those of a sample, apart from the size of the picture.
+/// How often a stage runs for the requested frames. work, bytes: sums over these runs of the work and the bytes of a
+/// run over the work and the bytes of a sample. The size of the picture is left out; a power law takes it into account.
 struct Runs {
   double count = 0, work = 0, bytes = 0;
 };

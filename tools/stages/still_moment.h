@@ -18,8 +18,9 @@ struct StillOptions {
 /// Another moment of the scene, seen by the same camera.
 class StillMoment {
  public:
-  /// `now`: the frame to render. Throws InputError if the file shows another state than the scene at options.number, if
-  /// its camera is not that of `now`, and for what --still does not know: lens, shutter, media.
+  /// `now`: the view of the frame to render. Throws InputError if the file shows another state than the scene at
+  /// options.number, if it was seen by another camera than `now`, or if the camera has a lens or an open shutter, or
+  /// the scene has media: --still supports none of these.
   StillMoment(Tool& tool, SceneInput& input, const StillOptions& options, const CameraView& now, std::uint64_t seed);
 
   const Image& image() const { return image_; }
