@@ -15,7 +15,7 @@
 namespace tempolux {
 
 /// An estimate with its standard error. error < 0: there is no estimate.
-struct Estimate {
+struct AuditedMean {
   double value = 0, error = -1;
   bool known() const { return error >= 0; }
 };
@@ -27,9 +27,9 @@ struct AuditEntry {
   std::string part;              ///< "picture", "tile 2 3" (column, row of 4 x 4) or "object N"
   std::uint32_t object = kNone;  ///< id.object
   std::size_t pixels = 0;
-  double shown = 0;  ///< radiance of the frame
-  Estimate light;    ///< radiance that the audit found
-  Estimate bias;     ///< `shown` minus `light`; exceeds three errors as rarely as a normally distributed number
+  double shown = 0;   ///< radiance of the frame
+  AuditedMean light;  ///< radiance that the audit found
+  AuditedMean bias;   ///< `shown` minus `light`; exceeds three errors as rarely as a normally distributed number
   /// Sum of all layers over all pixels of the picture (mean_to_white), divided by the part's number of pixels. share()
   /// is `bias` over this radiance, so shares of parts add up.
   double picture = 0;

@@ -48,7 +48,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
   std::vector<RecordChange> changes(records.size());
   parallel_each(records.size(), 256, [&](std::size_t i) {
     const IrradianceRecord& record = records[i];
-    changes[i].update = record.irradiance;
+    changes[i].updated_irradiance = record.irradiance;
     const PointLookup::Light* point = points.nearest(record.position, record.normal);
     const float radius = point ? kWider * points.point(*point).radius : 0;
     const PathRandom random = random_at(record.position, seed);
@@ -60,7 +60,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
       const auto change = maps[m].at(record.position, record.normal, radius, random, area);
       if (!change) continue;
       changes[i].influence = std::max(changes[i].influence, float(change->influence));
-      if (m == 0) changes[i].update = Rgb(Rgbd(record.irradiance) + change->irradiance);
+      if (m == 0) changes[i].updated_irradiance = Rgb(Rgbd(record.irradiance) + change->irradiance);
     }
   });
   return changes;

@@ -23,8 +23,8 @@ struct InfluenceThresholds {
 
 /// The change of a static record by the dynamic photons of a frame.
 struct RecordChange {
-  Rgb update{0.0f};     ///< W/m^2: the record's irradiance plus the change, which is E_t; may be negative
-  float influence = 0;  ///< W/m^2
+  Rgb updated_irradiance{0.0f};  ///< E_t [W/m^2]: the record's irradiance plus the change; may be negative
+  float influence = 0;           ///< W/m^2
 };
 
 /// Computes E_t of each record from the first of `maps`, which belongs to the frame, and its influence as the largest

@@ -34,7 +34,7 @@ std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cach
     const RecordChange& change = cache.changes[i];
     records[i].set = formats::SurfaceSet::static_set;
     records[i].influence = change.influence;
-    records[i].update = array_of(change.update);
+    records[i].update = array_of(change.updated_irradiance);
   }
   for (formats::IrradianceCacheRecord& record : to_file(cache.gathered, frame)) {
     record.set = formats::SurfaceSet::dynamic_set;

@@ -25,6 +25,9 @@ double share_of_distant(double distant, double others) {
   return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
 }
 
+/// Least weight of the sky over its unshadowed one: where no ray of the guide saw it, a sample may.
+constexpr double kLeastSky = 1.0 / 256;
+
 }  // namespace
 
 Lights Lights::guided(std::shared_ptr<const SkyGuide> guide) const {
@@ -33,26 +36,31 @@ Lights Lights::guided(std::shared_ptr<const SkyGuide> guide) const {
   return lights;
 }
 
-/// Sum of the weights of the environment and of all directional lights.
-double Lights::sum_distant(Vec3 normal) const {
-  double total = environment_weight_;
-  for (const std::uint32_t i : suns_) total += sun_weight(frame_->lights[i], normal);
-  return total;
-}
-
-/// Probability of choosing a distant light at a point. `total` receives the weight of the distant lights.
-double Lights::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
-  total = distant_irradiance(normal, from);
-  return total > 0 ? share_of_distant(total, tree_.start(point, normal).sum) : 0;
+/// The sky counts with the irradiance that the guide has learned, which walls reduce. Suns count unshadowed, so beside
+/// them the sky counts unshadowed, too.
+Lights::Distant Lights::distant_at(Vec3 point, Vec3 normal, From from) const {
+  Distant distant{.sky = environment_weight_};
+  if (from == From::all)
+    for (const std::uint32_t i : suns_) distant.suns += sun_weight(frame_->lights[i], normal);
+  if (!guide_) return distant;
+  const SkyGuide::Part* const part = guide_->at(point, normal);
+  distant.grid = guide_->grid_of(part);
+  if (!part || distant.suns > 0) return distant;
+  distant.lamps = part->lamps;
+  const double by_radiance = std::sqrt(part->irradiance * environment_weight_);
+  distant.sky = std::clamp(part->rms > 0 ? std::min(part->rms, by_radiance) : by_radiance,
+                           kLeastSky * environment_weight_, environment_weight_);
+  return distant;
 }
 
 /// u_float.x / share in [0, 1) chooses among the distant lights; the environment comes first.
-bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, double total, LightSample& s) const {
-  const double left = double(u_float.x) / share * total;
-  if (left < environment_weight_ || total <= environment_weight_)
-    return sky().sample(point, normal, share * environment_weight_ / total, left / environment_weight_, u_float, s);
-  return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_), u_float.y,
-                    share * (1 - environment_weight_ / total), s);
+bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, const Distant& distant,
+                            LightSample& s) const {
+  const double left = double(u_float.x) / share * distant.all();
+  if (left < distant.sky || !(distant.suns > 0))
+    return sky(distant.grid).sample(point, share * distant.sky / distant.all(), left / distant.sky, u_float, s);
+  return sample_sun(point, normal, (left - distant.sky) / distant.suns, u_float.y, share * distant.suns / distant.all(),
+                    s);
 }
 
 /// u in [0, 1) chooses among the directional lights; `probability` is the probability of choosing any of them. What is
@@ -110,8 +118,8 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
 bool Lights::sample_any(Vec3 point, Vec3 normal, const Draw& draw, From from, LightSample& sample) const {
   sample = {};
   const LightTree::Start start = tree_.start(point, normal);
-  const double distant = distant_irradiance(normal, from),
-               share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
+  const Distant distant = has_distant() ? distant_at(point, normal, from) : Distant{};
+  const double share = distant.all() > 0 ? share_of_distant(distant.all(), distant.lamps * start.sum) : 0;
   if (draw.choice < share) {
     // Distant lights use the remainder of the choice in place of u.x, even if the two are different numbers.
     return sample_distant(point, normal, {draw.choice, draw.u.y}, share, distant, sample) &&
@@ -128,6 +136,13 @@ bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3
   LightTree::Choice choice;
   if (!tree_.choose(start, point, normal, draw.choice, choice)) return false;
   return sample_slot(tree_slot_[choice.light], point, choice.probability * probability, choice.left, draw, sample);
+}
+
+bool Lights::sample_placed(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, double& unshadowed) const {
+  sample = {};
+  const LightTree::Start start = tree_.start(point, normal);
+  unshadowed = start.sum;
+  return sample_tree(start, 1, point, normal, {u.x, u, true}, sample);
 }
 
 bool Lights::sample_sun(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
@@ -152,8 +167,9 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (light == kNone) return 0;
   const double on_triangle = triangles_[slot].pdf_solid_angle(point, on_light);
   if (!(on_triangle > 0)) return 0;
-  double total = 0;
-  const double share = distant_share(point, normal, from, total);
+  const Distant distant = has_distant() ? distant_at(point, normal, from) : Distant{};
+  const double share =
+      distant.all() > 0 ? share_of_distant(distant.all(), distant.lamps * tree_.start(point, normal).sum) : 0;
   const float pdf = float(on_triangle * (1 - share) * tree_.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
@@ -161,10 +177,10 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
 float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction,
                               From from) const {
   if (!(environment_weight_ > 0)) return 0;
-  double total = 0;
-  const double share = distant_share(point, normal, from, total);
-  const double directed = sky().pdf_solid_angle(point, normal, place, direction);
-  const float pdf = float(directed * share * environment_weight_ / total);
+  const Distant distant = distant_at(point, normal, from);
+  const double share = share_of_distant(distant.all(), distant.lamps * tree_.start(point, normal).sum),
+               directed = sky(distant.grid).pdf_solid_angle(place, direction);
+  const float pdf = float(directed * share * distant.sky / distant.all());
   return pdf < INFINITY ? pdf : 0;
 }
 

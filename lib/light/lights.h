@@ -25,8 +25,6 @@
 
 namespace tempolux {
 
-class SkyGuide;
-
 /// An entry of the emission table: an emissive triangle or a part of one, a punctual light, or the environment. A
 /// triangle of a double sided material has the flux of both sides. Slots and probabilities stay the same over a
 /// segment: a lamp that is dimmed or moved keeps its slot, and only the flux of its photons changes.
@@ -90,9 +88,10 @@ class Lights {
   Lights placed_alike() const;
 
   /// The same lights with a guide. Where the guide has a grid, sample() draws a direction of the environment from the
-  /// grid with probability 1 - kUnguidedShare, else by radiance. All pdfs are those of this mixture, so expected values
-  /// do not change, and a misleading guide costs at most 1 / kUnguidedShare times the variance. emit() does not use the
-  /// guide.
+  /// grid with probability 1 - kUnguidedShare, else by radiance. Where no sun is chosen as well, sample() chooses
+  /// between the environment and the lights inside the scene by what the guide has found of both behind walls. All pdfs
+  /// are those of these choices, so expected values do not change. A misleading guide multiplies the mean square of a
+  /// sample by at most 4 / kUnguidedShare. emit() does not use the guide.
   Lights guided(std::shared_ptr<const SkyGuide> guide) const;
   /// nullptr: none.
   const std::shared_ptr<const SkyGuide>& guide() const { return guide_; }
@@ -108,6 +107,10 @@ class Lights {
   /// Chooses a directional light in proportion to its irradiance on the surface of `normal` (unit). u.x in [0, 1)
   /// chooses; the rest of u.x and u.y choose a direction of the light's disc. False if none is above the surface.
   bool sample_sun(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
+
+  /// Chooses a light inside the scene, as sample() does where nothing else shines. `unshadowed` [W/m^2]: the light
+  /// tree's estimate of their irradiance without shadows. False if none can reach the point.
+  bool sample_placed(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, double& unshadowed) const;
 
   bool empty() const { return slots_.empty(); }        ///< true if the emission table has no slot
   std::size_t count() const { return slots_.size(); }  ///< number of slots
@@ -188,14 +191,18 @@ class Lights {
                    LightSample& sample) const;
   bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, const Draw& draw,
                    LightSample& sample) const;
-  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, double total, LightSample& s) const;
-  SkySource sky() const { return {*environment_, aim_, guide_.get()}; }
+  /// Distant lights at a place: their irradiances [W/m^2] as choices weigh them, and what the guide knows.
+  struct Distant {
+    double sky = 0, suns = 0;
+    double lamps = 1;  ///< what the irradiance of the light tree is multiplied by
+    const SkyGuide::Grid* grid = nullptr;
+    double all() const { return sky + suns; }
+  };
+  Distant distant_at(Vec3 point, Vec3 normal, From from) const;
+  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, const Distant& distant,
+                      LightSample& s) const;
+  SkySource sky(const SkyGuide::Grid* grid) const { return {*environment_, aim_, grid}; }
   bool sample_sun(Vec3 point, Vec3 normal, double u, float u_disc, double probability, LightSample& s) const;
-  double sum_distant(Vec3 normal) const;
-  double distant_irradiance(Vec3 normal, From from) const {
-    return !has_distant() ? 0 : from == From::all ? sum_distant(normal) : environment_weight_;
-  }
-  double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
   bool shines(std::size_t slot) const;
   /// Calls f with the light of a slot: a TriangleLight, a PunctualSource or a SkySource.
   template <class F>

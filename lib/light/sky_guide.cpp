@@ -3,20 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lib/core/pi.h"
+#include "lib/core/statistics.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kCells = SkyGuide::kRows * SkyGuide::kColumns;
+/// Least extent of a grid in height and in azimuth [rad]: a thousandth of a picture's usual angle.
+constexpr double kLeastExtent = 1e-3;
+constexpr int kRows = SkyGuide::kRows, kColumns = SkyGuide::kColumns, kCells = kRows * kColumns;
 
-/// Number of the cell that holds a direction. Rows divide the height y evenly, so all cells have the same solid angle.
-std::size_t cell_of(Vec3 d) {
-  const double turn = std::atan2(double(d.z), double(d.x)) / (2 * kPiD) + 0.5;
-  const int row = std::clamp(int((1 - double(d.y)) / 2 * SkyGuide::kRows), 0, SkyGuide::kRows - 1),
-            column = std::clamp(int(turn * SkyGuide::kColumns), 0, SkyGuide::kColumns - 1);
-  return std::size_t(row * SkyGuide::kColumns + column);
+/// Azimuth of a direction, in [0, 2 pi).
+double azimuth(Vec3 d) {
+  const double turn = std::atan2(double(d.z), double(d.x));
+  return turn < 0 ? turn + 2 * kPiD : turn;
+}
+
+/// `turn` counted from `first`, in [0, 2 pi).
+double turned(double turn, double first) { return turn < first ? turn - first + 2 * kPiD : turn - first; }
+
+/// The azimuth behind the widest gap between azimuths, and the gap's width.
+std::pair<double, double> widest_gap(std::vector<double> turns) {
+  std::ranges::sort(turns);
+  std::pair<double, double> widest{turns.front(), turns.front() + 2 * kPiD - turns.back()};
+  for (std::size_t i = 1; i < turns.size(); ++i)
+    if (const double gap = turns[i] - turns[i - 1]; gap > widest.second) widest = {turns[i], gap};
+  return widest;
 }
 
 /// 0 to 5: the axis and sign that a normal is closest to.
@@ -41,12 +55,18 @@ std::size_t find(std::span<const float> ends, double& u) {
 Vec3 SkyGuide::Grid::sample(double u1, double u2) const {
   const std::size_t row = find(row_end_, u1),
                     column = find(std::span(column_end_).subspan(row * kColumns, kColumns), u2);
-  const double y = 1 - 2 * (double(row) + u1) / kRows, phi = 2 * kPiD * ((double(column) + u2) / kColumns - 0.5),
-               across = std::sqrt(std::max(0.0, 1 - y * y));
+  const double y = std::clamp(top_ - height_ * (double(row) + u1) / kRows, -1.0, 1.0),
+               phi = first_ + turn_ * (double(column) + u2) / kColumns, across = std::sqrt(std::max(0.0, 1 - y * y));
   return {float(across * std::cos(phi)), float(y), float(across * std::sin(phi))};
 }
 
-double SkyGuide::Grid::pdf_solid_angle(Vec3 direction) const { return double(density_[cell_of(direction)]); }
+double SkyGuide::Grid::pdf_solid_angle(Vec3 direction) const {
+  const double down = top_ - double(direction.y), around = turned(azimuth(direction), first_);
+  if (!(down >= 0 && down <= height_ && around <= turn_)) return 0;
+  const int row = std::min(int(down / height_ * kRows), kRows - 1),
+            column = std::min(int(around / turn_ * kColumns), kColumns - 1);
+  return double(density_[std::size_t(row * kColumns + column)]);
+}
 
 /// Builds the tree over the places of one side.
 struct SkyGuide::Builder {
@@ -55,22 +75,40 @@ struct SkyGuide::Builder {
   int rays;
 
   std::uint32_t build(std::span<std::uint32_t> of, std::span<Hit> hits) const;
-  std::uint32_t leaf(std::size_t places_in, std::span<const Hit> hits) const;
+  std::uint32_t leaf(std::span<const std::uint32_t> of, std::span<const Hit> hits) const;
 };
 
 SkyGuide::Grid::Grid(std::span<const Hit> hits) {
+  double low = 1, high = -1;
+  std::vector<double> turns;
+  for (const Hit& hit : hits) {
+    low = std::min(low, double(hit.direction.y));
+    high = std::max(high, double(hit.direction.y));
+    turns.push_back(azimuth(hit.direction));
+  }
+  const auto [first, gap] = widest_gap(turns);
+  // A cell more on each side: the hits of a window lie within its edges. kLeastExtent keeps cells of equal hits apart.
+  height_ = std::max(high - low, kLeastExtent) * kRows / (kRows - 2);
+  top_ = std::min(1.0, high + height_ / kRows);
+  height_ = std::min(height_, top_ + 1);
+  const double extent = std::max(2 * kPiD - gap, kLeastExtent);
+  turn_ = std::min(extent * kColumns / (kColumns - 2), 2 * kPiD);
+  first_ = first - (turn_ - extent) / 2;
+  if (first_ < 0) first_ += 2 * kPiD;
+
   std::vector<double> weights(kCells, 0.0);
   double sum = 0;
-  for (const Hit& hit : hits) {
-    const std::size_t cell = cell_of(hit.direction);
-    const int row = int(cell) / kColumns, column = int(cell) % kColumns;
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const int row = std::clamp(int((top_ - double(hits[k].direction.y)) / height_ * kRows), 0, kRows - 1),
+              column = std::clamp(int(turned(turns[k], first_) / turn_ * kColumns), 0, kColumns - 1);
     for (int i = -1; i <= 1; ++i)
       for (int j = -1; j <= 1; ++j) {
-        const int r = std::clamp(row + i, 0, kRows - 1), c = (column + j + kColumns) % kColumns;
-        weights[std::size_t(r * kColumns + c)] += double(hit.weight) * (i == 0 ? 2 : 1) * (j == 0 ? 2 : 1);
+        const int r = std::clamp(row + i, 0, kRows - 1), c = std::clamp(column + j, 0, kColumns - 1);
+        weights[std::size_t(r * kColumns + c)] += double(hits[k].weight) * (i == 0 ? 2 : 1) * (j == 0 ? 2 : 1);
       }
-    sum += 16 * double(hit.weight);
+    sum += 16 * double(hits[k].weight);
   }
+
   double below = 0;
   for (int r = 0; r < kRows; ++r) {
     double row = 0, so_far = 0;
@@ -89,21 +127,39 @@ SkyGuide::Grid::Grid(std::span<const Hit> hits) {
       const auto row = std::size_t(r), cell = std::size_t(r * kColumns + c);
       const double of_row = double(row_end_[row]) - (r > 0 ? double(row_end_[row - 1]) : 0),
                    of_cell = double(column_end_[cell]) - (c > 0 ? double(column_end_[cell - 1]) : 0);
-      density_[cell] = float(of_row * of_cell * kCells / (4 * kPiD));
+      density_[cell] = float(of_row * of_cell * kCells / (height_ * turn_));
     }
 }
 
-std::uint32_t SkyGuide::Builder::leaf(std::size_t places_in, std::span<const Hit> hits) const {
-  const double sent = double(places_in) * rays;
-  const bool useful = hits.size() >= kLeastHits && double(hits.size()) <= kMostSeen * sent;
-  guide.nodes_.push_back({-1, 0, useful ? std::uint32_t(guide.grids_.size()) : kNoGrid, 0});
-  if (useful) guide.grids_.emplace_back(hits);
+std::uint32_t SkyGuide::Builder::leaf(std::span<const std::uint32_t> of, std::span<const Hit> hits) const {
+  const double sent = double(of.size()) * rays;
+  double seen = 0, weight = 0;
+  for (const Hit& hit : hits) seen += double(hit.share), weight += double(hit.weight);
+  guide.nodes_.push_back({-1, 0, std::uint32_t(guide.parts_.size()), 0});
+  Part part;
+  if (sent > 0) part.irradiance = kPiD * weight / sent;
+  if (hits.size() >= kLeastHits && seen <= kMostSeen * sent) {
+    part.grid = std::uint32_t(guide.grids_.size());
+    const Grid& grid = guide.grids_.emplace_back(hits);
+    double square = 0;
+    for (const Hit& hit : hits) {
+      const double cosine = std::max(0.0f, dot(places[hit.place].normal, hit.direction)),
+                   pdf = (1 - kUnguidedShare) * grid.pdf_solid_angle(hit.direction);
+      if (pdf > 0) square += double(hit.weight) * double(hit.weight / hit.share) * cosine * kPiD / pdf;
+    }
+    part.rms = std::sqrt(square / sent);
+  }
+  double lamps = 0, known = 0;
+  for (const std::uint32_t i : of)
+    if (places[i].lamps >= 0) lamps += double(places[i].lamps), ++known;
+  if (known > 0) part.lamps = std::sqrt(lamps / known);
+  guide.parts_.push_back(part);
   return std::uint32_t(guide.nodes_.size() - 1);
 }
 
 /// Adds the node of these places and their hits, and all nodes below. Returns the node's number.
 std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hit> hits) const {
-  if (hits.size() < 2 * kLeastHits) return leaf(of.size(), hits);
+  if (hits.size() < 2 * kLeastHits) return leaf(of, hits);
   const auto position = [&](const Hit& hit) { return places[hit.place].position; };
   Vec3 low = position(hits[0]), high = low;
   for (const Hit& hit : hits) {
@@ -120,7 +176,7 @@ std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hi
   const auto upper_hits =
       std::stable_partition(hits.begin(), hits.end(), [&](const Hit& hit) { return position(hit)[axis] < split; });
   const auto below = std::size_t(upper_hits - hits.begin());
-  if (below < kLeastHits / 2) return leaf(of.size(), hits);  // many places have the same coordinate
+  if (below < kLeastHits / 2) return leaf(of, hits);  // many places have the same coordinate
   const auto upper_places =
       std::stable_partition(of.begin(), of.end(), [&](std::uint32_t i) { return places[i].position[axis] < split; });
   const auto places_below = std::size_t(upper_places - of.begin());
@@ -141,12 +197,12 @@ SkyGuide::SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int ray
   for (std::size_t side = 0; side < 6; ++side) root_[side] = builder.build(places_of[side], hits_of[side]);
 }
 
-const SkyGuide::Grid* SkyGuide::at(Vec3 position, Vec3 normal) const {
-  if (grids_.empty() || normal == Vec3{}) return nullptr;
+const SkyGuide::Part* SkyGuide::at(Vec3 position, Vec3 normal) const {
+  if (parts_.empty() || normal == Vec3{}) return nullptr;
   std::uint32_t node = root_[side_of(normal)];
   while (nodes_[node].axis >= 0)
     node = position[nodes_[node].axis] < nodes_[node].split ? nodes_[node].left : nodes_[node].right;
-  return nodes_[node].left == kNoGrid ? nullptr : &grids_[nodes_[node].left];
+  return &parts_[nodes_[node].left];
 }
 
 }  // namespace tempolux

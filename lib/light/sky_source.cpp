@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lib/core/random.h"
-#include "lib/light/sky_guide.h"
 
 namespace tempolux {
 namespace {
@@ -19,12 +18,11 @@ double mixed_pdf(double by_radiance, const SkyGuide::Grid& grid, Vec3 direction)
 
 /// Choosing used some of the bits of u_float.x, so bits made from the other coordinate are added in their places;
 /// likewise for u_float.y.
-bool SkySource::sample(Vec3 point, Vec3 normal, double probability, double u, Vec2 u_float, LightSample& s) const {
+bool SkySource::sample(Vec3 point, double probability, double u, Vec2 u_float, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  const SkyGuide::Grid* const grid = guide ? guide->at(point, normal) : nullptr;
   if (!grid) {
     if (!map.sample(u1, u2, found)) return false;
   } else {
@@ -43,8 +41,7 @@ bool SkySource::sample(Vec3 point, Vec3 normal, double probability, double u, Ve
   return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
-double SkySource::pdf_solid_angle(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const {
-  const SkyGuide::Grid* const grid = guide ? guide->at(point, normal) : nullptr;
+double SkySource::pdf_solid_angle(const EnvironmentLight::Place& place, Vec3 direction) const {
   const double by_radiance = map.pdf_solid_angle(place, direction);
   return grid ? mixed_pdf(by_radiance, *grid, direction) : by_radiance;
 }

@@ -7,16 +7,15 @@
 #include "lib/light/environment_light.h"
 #include "lib/light/light_sample.h"
 #include "lib/light/light_tree.h"
+#include "lib/light/sky_guide.h"
 
 namespace tempolux {
-
-class SkyGuide;
 
 /// The environment around the scene sphere.
 struct SkySource {
   const EnvironmentLight& map;
-  const Aim& aim;                   ///< where its photons start; also holds the radius of the scene sphere
-  const SkyGuide* guide = nullptr;  ///< null: none
+  const Aim& aim;                        ///< where its photons start; also holds the radius of the scene sphere
+  const SkyGuide::Grid* grid = nullptr;  ///< of the part that holds the point; null: none
 
   static constexpr bool emits() { return true; }
   static constexpr bool distant() { return true; }
@@ -24,12 +23,12 @@ struct SkySource {
   static LightBounds bounds(const Box3&) { return {}; }
   /// Flux [W] through the scene sphere's disc from all directions.
   Rgbd flux() const { return map.integral() * aim.disc_area(); }
-  /// Draws a direction for a point by radiance, or from the guide's grid where it has one. u is in [0, 1) and was
+  /// Draws a direction for a point by radiance, or from the grid. u is in [0, 1) and was
   /// stretched from u_float.x, which has 24 random bits. `probability`: of choosing the environment. False if no light
   /// comes from the direction.
-  bool sample(Vec3 point, Vec3 normal, double probability, double u, Vec2 u_float, LightSample& s) const;
+  bool sample(Vec3 point, double probability, double u, Vec2 u_float, LightSample& s) const;
   /// pdf [1/sr] of a direction (unit), whose place is `place`, given that the environment is chosen.
-  double pdf_solid_angle(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const;
+  double pdf_solid_angle(const EnvironmentLight::Place& place, Vec3 direction) const;
   /// Emits a photon of a slot with this probability: u0 and u[1] give the direction, u[2] and u[3] the start.
   void emit(double u0, const std::array<double, 4>& u, double probability, PhotonEmission& e) const;
 };

@@ -112,7 +112,7 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
 
 /// Traces a path back from the place of a caustic photon along wi. Where the path meets a surface, one light sample is
 /// taken by the surface's lobes S. Returns the radiance [W/m^2/sr, mean of the channels] of this sample after the
-/// reflection by the Lambert lobe of the photon's place. 0 for a lamp with an extent, a mirror and smooth glass.
+/// reflection by the Lambert lobe of the photon's place. 0 for a lamp that rays meet, a mirror and smooth glass.
 double found_by_path(const RenderScene& scene, const formats::Photon& photon, Vec3 wi, const PathRandom& random) {
   const Vec3 place = vec_of(photon.position);
   const float offset = 4 * Reach(scene.tracer).offset();

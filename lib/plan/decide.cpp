@@ -32,6 +32,14 @@ constexpr const char* kRecordsReason = "irradcache-build records";
 constexpr const char* kMovingReason = "photon-trace --map dynamic";
 constexpr const char* kSplitReason = "photonmap-split";
 
+/// What is decided about.
+struct Deciding {
+  const PlannedSegment& segment;  ///< supplies the pictures and the movers
+  const Wish& wish;
+  bool media;
+  const SceneSource& source;
+};
+
 std::string words(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
@@ -44,9 +52,9 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
 }
 
 /// Sets the decisions about indirect light: the way that is best for all measured frames together, and its numbers.
-void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
+void join(const std::vector<FrameWays>& looks, const Wish& wish, bool media, Decisions& d) {
   d.photon_paths = 0;
-  for (const Look& look : looks) d.photon_paths = std::max(d.photon_paths, look.paths);
+  for (const FrameWays& look : looks) d.photon_paths = std::max(d.photon_paths, look.paths);
   const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
@@ -94,22 +102,22 @@ double part_of_records(const PlannedSegment& segment, double new_share) {
 }
 
 /// Decides which parts of a frame's light (photons, points, records) are derived from the light of the static scene.
-void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
-                   StaticTree& tree, Decisions& d) {
+void decide_moving(const Deciding& about, StaticTree& tree, Decisions& d) {
+  const Wish& wish = about.wish;
   const auto anew = [&](const std::string& because) { d.reasons.push_back({kMovingReason, because}); };
-  const std::vector<int> states = segment.states();
+  const std::vector<int> states = about.segment.states();
   if (!d.points() || states.size() < kFewestStates)
     return anew(words(states.size(), "state") + " of light in the segment");
-  if (media && wish.moving != "auto" && wish.moving != "anew")
+  if (about.media && wish.moving != "auto" && wish.moving != "anew")
     throw InputError("--moving " + wish.moving +
                      ": the scene has media, which all light meets: what movers change of it cannot be told apart; use "
                      "--moving anew");
-  if (media) return anew("there are media, which all light meets");
+  if (about.media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
   const MovingChoice choice =
       wish.moving == "auto"
-          ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds, tree).moving(), states.size(),
-                          part_of_records(segment, d.new_share))
+          ? choose_moving(FramePilot(wish, about.source, states[states.size() / 2], d.kinds, tree).moving(),
+                          states.size(), part_of_records(about.segment, d.new_share))
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
@@ -135,21 +143,144 @@ Reason density_reason(const PlannedSegment& segment) {
 }
 
 /// For light textures: the number of light paths that stores the wanted photons, and the width of the filter.
-void decide_preview(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish,
-                    const SceneSource& source, StaticTree& tree, Decisions& d) {
+void decide_preview(const Deciding& about, const std::vector<int>& view_frames, StaticTree& tree, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
   double kernel = 0;
   for (const int frame : d.looked) {
-    FramePilot pilot(wish, source, frame, d.kinds, tree);
+    FramePilot pilot(about.wish, about.source, frame, d.kinds, tree);
     if (frame == d.looked[d.looked.size() / 2]) kernel = pilot.kernel();
     pilots.push_back(pilot.preview());
   }
-  const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);
+  const PreviewChoice choice = choose_preview(pilots, kernel, about.wish.photons, kPreviewWindow);
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
-  d.view = view_of(view_frames, d.kinds, wish, source, tree);
-  d.reasons.push_back(density_reason(segment));
+  d.view = view_of(view_frames, d.kinds, about.wish, about.source, tree);
+  d.reasons.push_back(density_reason(about.segment));
+}
+
+/// Decisions that need no pilot.
+Decisions begin(const PlannedSegment& segment, bool media) {
+  Decisions d;
+  d.kinds = kinds_of(segment.materials, media);
+  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
+                                                                 : "nothing reflects by a Lambert lobe"});
+  return d;
+}
+
+/// True if the light of the static scene may be computed once for all states of the segment.
+bool may_share_static(const Deciding& about) {
+  return about.segment.states().size() >= kFewestStates && !about.media && about.wish.moving != "anew";
+}
+
+/// Mean number of pictures that share the light paths of a photon map. If the light of the static scene is shared, its
+/// paths are traced twice, the second time to find the paths that movers touch; so the number of pictures is halved.
+double pictures_of_a_map(const Deciding& about) {
+  const auto pictures = double(about.segment.pictures().size()), states = double(about.segment.states().size());
+  return std::max(1.0, may_share_static(about) ? pictures / 2 : pictures / states);
+}
+
+/// How the pictures of the segment share light. If they share the light of the static scene, each state of light
+/// gathers further records where movers matter: at least the share kLeastRecords of a picture's records, and as many
+/// again as its part of the static records.
+LightSharing sharing_in(const Deciding& about, const FramePilot& pilot) {
+  const PlannedSegment& segment = about.segment;
+  LightSharing sharing{.pictures = pictures_of_a_map(about)};
+  if (segment.views().size() < 2) return sharing;
+  sharing.new_share = pilot.new_share(segment);
+  const double part = part_of_records(segment, sharing.new_share);
+  if (segment.states().size() == 1) sharing.records = part;
+  else if (may_share_static(about)) sharing.records = std::min(1.0, 2 * part + kLeastRecords);
+  return sharing;
+}
+
+/// The results of the pilots in the frames `d.looked`, and what later pilots reuse of them.
+struct LookedAt {
+  StaticTree tree;
+  std::unique_ptr<FramePilot> middle;
+  std::vector<FrameWays> looks;
+  LightSharing sharing;
+
+  /// shot: the decisions of the shot; its way must be measured, too.
+  LookedAt(const Deciding& about, const Decisions& d, const Decisions* shot, double least_hidden = kAuditLimit) {
+    const auto pilot_of = [&](int frame) {
+      return std::make_unique<FramePilot>(about.wish, about.source, frame, d.kinds, tree);
+    };
+    const auto sharing_of = [&](const FramePilot& pilot) {
+      LightSharing found = sharing_in(about, pilot);
+      found.least_hidden = least_hidden;
+      return found;
+    };
+    looks = look_at({d.looked, about.wish, about.media, pilot_of, sharing_of, shot}, middle, sharing);
+  }
+};
+
+/// Decides how many pictures share records.
+void decide_together(const PlannedSegment& segment, double new_share, Decisions& d) {
+  if (d.records()) d.new_share = new_share;
+  d.together = pictures_together(segment.views().size(), d.new_share);
+}
+
+/// Decides about the light by what pilots found.
+void decide_by_looks(const Deciding& about, LookedAt& looked, Decisions& d) {
+  join(looked.looks, about.wish, about.media, d);
+  decide_together(about.segment, looked.sharing.new_share, d);
+  decide_moving(about, looked.tree, d);
+  if (may_share_static(about) && d.moving == MovingMethod::anew) {
+    // Each state traces its own map, so further light paths cost more than was planned.
+    d.photon_paths = 0;
+    for (const FrameWays& look : looked.looks) d.photon_paths = std::max(d.photon_paths, look.paths);
+  }
+  decide_split(*looked.middle, about.wish, d);
+}
+
+/// Decides about the light without a shot. `view_frames`: the frames from which view_of() looks.
+void decide_light(const Deciding& about, const std::vector<int>& view_frames, Decisions& d,
+                  double least_hidden = kAuditLimit) {
+  if (about.wish.method == FrameMethod::preview) {
+    StaticTree tree;
+    return decide_preview(about, view_frames, tree, d);
+  }
+  LookedAt looked(about, d, nullptr, least_hidden);
+  decide_by_looks(about, looked, d);
+  if (d.photons()) d.view = view_of(view_frames, d.kinds, about.wish, about.source, looked.tree);
+}
+
+/// Copies the shot's decisions about the light.
+void copy_shot(const PlannedSegment& segment, const Decisions& shot, const LookedAt& looked, Decisions& d) {
+  d.indirect = shot.indirect;
+  d.caustic_map = shot.caustic_map;
+  d.record_rays = shot.record_rays;
+  d.pixel_error = shot.pixel_error;
+  d.photon_paths = shot.photon_paths;
+  if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
+  d.reasons.push_back({kRecordsReason, "as in the whole shot; here " + because(joined_ways(looked.looks))});
+  decide_together(segment, looked.sharing.new_share, d);
+  if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
+  if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
+  for (const char* stage : {kMovingReason, kSplitReason}) {
+    const auto reason = std::ranges::find(shot.reasons, stage, &Reason::stage);
+    if (reason != shot.reasons.end()) d.reasons.push_back({stage, "as in the whole shot; there " + reason->because});
+  }
+}
+
+/// Takes the shot's decisions about the light where they suit the segment.
+void take_from_shot(const Deciding& about, const Decisions& shot, Decisions& d) {
+  LookedAt looked(about, d, &shot);
+  if (departs(looked.looks, about.wish, about.media, shot)) {
+    decide_by_looks(about, looked, d);
+    std::ranges::find(d.reasons, kRecordsReason, &Reason::stage)->because +=
+        "; the shot's way costs more here by more than pilots err";
+  } else {
+    copy_shot(about.segment, shot, looked, d);
+  }
+  if (d.photons()) d.view = shot.view;
+}
+
+/// Throws InputError for a wish that the scene cannot fulfil.
+void refuse_paths(const Wish& wish, bool media) {
+  if (wish.indirect == "paths" && media)
+    throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
 }
 
 }  // namespace
@@ -173,134 +304,6 @@ std::vector<int> looked_frames(const PlannedSegment& segment, bool of_shot) {
   return frames;
 }
 
-namespace {
-
-/// Decisions that need no pilot.
-Decisions begin(const PlannedSegment& segment, bool media) {
-  Decisions d;
-  d.kinds = kinds_of(segment.materials, media);
-  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
-                                                                 : "nothing reflects by a Lambert lobe"});
-  return d;
-}
-
-/// True if the light of the static scene may be computed once for all states of the segment.
-bool may_share_static(const PlannedSegment& segment, const Wish& wish, bool media) {
-  return segment.states().size() >= kFewestStates && !media && wish.moving != "anew";
-}
-
-/// Mean number of pictures that share the light paths of a photon map. If the light of the static scene is shared, its
-/// paths are traced twice, the second time to find the paths that movers touch; so the number of pictures is halved.
-double pictures_of_a_map(const PlannedSegment& segment, const Wish& wish, bool media) {
-  const auto pictures = double(segment.pictures().size()), states = double(segment.states().size());
-  return std::max(1.0, may_share_static(segment, wish, media) ? pictures / 2 : pictures / states);
-}
-
-/// How the pictures of the segment share light. If they share the light of the static scene, each state of light
-/// gathers further records where movers matter: at least the share kLeastRecords of a picture's records, and as many
-/// again as its part of the static records.
-Sharing sharing_in(const PlannedSegment& segment, const Wish& wish, bool media, const FramePilot& pilot) {
-  Sharing sharing{.pictures = pictures_of_a_map(segment, wish, media)};
-  if (segment.views().size() < 2) return sharing;
-  sharing.new_share = pilot.new_share(segment);
-  const double part = part_of_records(segment, sharing.new_share);
-  if (segment.states().size() == 1) sharing.records = part;
-  else if (may_share_static(segment, wish, media)) sharing.records = std::min(1.0, 2 * part + kLeastRecords);
-  return sharing;
-}
-
-/// The results of the pilots in the frames `d.looked`, and what later pilots reuse of them.
-struct LookedAt {
-  StaticTree tree;
-  std::unique_ptr<FramePilot> middle;
-  std::vector<Look> looks;
-  Sharing sharing;
-
-  /// shot: the decisions of the shot; its way must be measured, too.
-  LookedAt(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, const Decisions& d,
-           const Decisions* shot, double least_hidden = kAuditLimit) {
-    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
-    const auto sharing_of = [&](const FramePilot& pilot) {
-      Sharing found = sharing_in(segment, wish, media, pilot);
-      found.least_hidden = least_hidden;
-      return found;
-    };
-    looks = look_at({d.looked, wish, media, pilot_of, sharing_of, shot}, middle, sharing);
-  }
-};
-
-/// Decides how many pictures share records.
-void decide_together(const PlannedSegment& segment, double new_share, Decisions& d) {
-  if (d.records()) d.new_share = new_share;
-  d.together = pictures_together(segment.views().size(), d.new_share);
-}
-
-/// Decides about the light by what pilots found; `segment` supplies the pictures and the movers.
-void decide_by_looks(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
-                     LookedAt& looked, Decisions& d) {
-  join(looked.looks, wish, media, d);
-  decide_together(segment, looked.sharing.new_share, d);
-  decide_moving(segment, wish, media, source, looked.tree, d);
-  if (may_share_static(segment, wish, media) && d.moving == MovingMethod::anew) {
-    // Each state traces its own map, so further light paths cost more than was planned.
-    d.photon_paths = 0;
-    for (const Look& look : looked.looks) d.photon_paths = std::max(d.photon_paths, look.paths);
-  }
-  decide_split(*looked.middle, wish, d);
-}
-
-/// Decides about the light without a shot. `view_frames`: the frames from which view_of() looks.
-void decide_light(const PlannedSegment& segment, const std::vector<int>& view_frames, const Wish& wish, bool media,
-                  const SceneSource& source, Decisions& d, double least_hidden = kAuditLimit) {
-  if (wish.method == FrameMethod::preview) {
-    StaticTree tree;
-    return decide_preview(segment, view_frames, wish, source, tree, d);
-  }
-  LookedAt looked(segment, wish, media, source, d, nullptr, least_hidden);
-  decide_by_looks(segment, wish, media, source, looked, d);
-  if (d.photons()) d.view = view_of(view_frames, d.kinds, wish, source, looked.tree);
-}
-
-/// Copies the shot's decisions about the light.
-void copy_shot(const PlannedSegment& segment, const Decisions& shot, const LookedAt& looked, Decisions& d) {
-  d.indirect = shot.indirect;
-  d.caustic_map = shot.caustic_map;
-  d.record_rays = shot.record_rays;
-  d.pixel_error = shot.pixel_error;
-  d.photon_paths = shot.photon_paths;
-  if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";
-  d.reasons.push_back({kRecordsReason, "as in the whole shot; here " + because(joined_ways(looked.looks))});
-  decide_together(segment, looked.sharing.new_share, d);
-  if (segment.states().size() >= kFewestStates && d.points()) d.moving = shot.moving;
-  if (d.points()) d.split = shot.split && d.moving != MovingMethod::records;
-  for (const char* stage : {kMovingReason, kSplitReason}) {
-    const auto reason = std::ranges::find(shot.reasons, stage, &Reason::stage);
-    if (reason != shot.reasons.end()) d.reasons.push_back({stage, "as in the whole shot; there " + reason->because});
-  }
-}
-
-/// Takes the shot's decisions about the light where they suit the segment.
-void take_from_shot(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
-                    const Decisions& shot, Decisions& d) {
-  LookedAt looked(segment, wish, media, source, d, &shot);
-  if (departs(looked.looks, wish, media, shot)) {
-    decide_by_looks(segment, wish, media, source, looked, d);
-    std::ranges::find(d.reasons, kRecordsReason, &Reason::stage)->because +=
-        "; the shot's way costs more here by more than pilots err";
-  } else {
-    copy_shot(segment, shot, looked, d);
-  }
-  if (d.photons()) d.view = shot.view;
-}
-
-/// Throws InputError for a wish that the scene cannot fulfil.
-void refuse_paths(const Wish& wish, bool media) {
-  if (wish.indirect == "paths" && media)
-    throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
-}
-
-}  // namespace
-
 Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wish, bool media,
                       const SceneSource& source) {
   if (pieces.size() == 1) return decide(pieces.front(), wish, media, source);
@@ -314,7 +317,7 @@ Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wis
   refuse_paths(wish, media);
   // Light that paths never find counts from half of the share on from which it counts in a segment. Else a share near
   // the limit would be found in some segments alone, and the light would jump where they meet.
-  if (d.photons()) decide_light(moving, frames_of(pieces), wish, media, source, d, kAuditLimit / 2);
+  if (d.photons()) decide_light({moving, wish, media, source}, frames_of(pieces), d, kAuditLimit / 2);
   return d;
 }
 
@@ -329,7 +332,7 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
     return d;
   }
   if (!shot) {
-    decide_light(segment, frames_of({&segment, 1}), wish, media, source, d);
+    decide_light({segment, wish, media, source}, frames_of({&segment, 1}), d);
   } else if (wish.method == FrameMethod::preview) {
     d.indirect = shot->indirect;
     d.photon_paths = shot->photon_paths;
@@ -337,7 +340,7 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
     d.view = shot->view;
     d.reasons.push_back(density_reason(segment));
   } else {
-    take_from_shot(segment, wish, media, source, *shot, d);
+    take_from_shot({segment, wish, media, source}, *shot, d);
   }
   decide_walk(segment, d);
   return d;

@@ -37,10 +37,11 @@ FramePilot::FramePilot(const Wish& wish, const SceneSource& source, int number, 
       tracer_(frame_, tree),
       lights_(frame_, table_) {}
 
-Look FramePilot::look(int places, const Sharing& sharing, const std::function<bool(const Look&)>& enough) {
+FrameWays FramePilot::look(int places, const LightSharing& sharing,
+                           const std::function<bool(const FrameWays&)>& enough) {
   const Lights& aimed_lights = aimed();
   const auto look_of = [&](const RoughFrame& rough) {
-    Look look;
+    FrameWays look;
     look.paths = rough.paths_of_light;
     const bool filtered = wish_.filter != 0;
     const Order order{.pixels = double(wish_.width) * wish_.height,

@@ -30,7 +30,7 @@ struct SceneSource {
 std::vector<int> spread(const std::vector<int>& frames);
 
 /// The result of a rough frame.
-struct Look {
+struct FrameWays {
   std::vector<Way> ways;    ///< the ways to light, the best first
   std::uint64_t paths = 0;  ///< light paths that a photon map needs (photon_paths)
   /// True if every way with this method was measured.
@@ -40,7 +40,7 @@ struct Look {
 };
 
 /// How the pictures of a segment share light (Order::pictures, Order::records).
-struct Sharing {
+struct LightSharing {
   double new_share = 0;  ///< Decisions::new_share
   /// Number of pictures that share photons and points, and the share of its records that a picture pays for (Order).
   double pictures = 1, records = 1;
@@ -54,7 +54,7 @@ class FramePilot {
   FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree);
 
   /// Renders a rough frame of `places` places. It ends early once enough(look) is true.
-  Look look(int places, const Sharing& sharing, const std::function<bool(const Look&)>& enough);
+  FrameWays look(int places, const LightSharing& sharing, const std::function<bool(const FrameWays&)>& enough);
   PreviewPilot preview();  ///< pilot_preview(), with aimed photons
   double kernel();         ///< pilot_kernel(): photons below the best Gaussian of a light texture
   SplitChoice split();     ///< choose_split() by a pilot

@@ -31,9 +31,9 @@ const double kErrorOfOne = std::log(kDeparture);
 
 }  // namespace
 
-std::vector<Way> joined_ways(const std::vector<Look>& looks) {
+std::vector<Way> joined_ways(const std::vector<FrameWays>& looks) {
   std::vector<std::vector<Way>> of_frames;
-  for (const Look& look : looks) of_frames.push_back(look.ways);
+  for (const FrameWays& look : looks) of_frames.push_back(look.ways);
   return joined(of_frames);
 }
 
@@ -57,14 +57,14 @@ bool may_follow(const std::vector<Way>& ways, std::size_t frames, const Wish& wi
 
 }  // namespace
 
-std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, Sharing& sharing) {
+std::vector<FrameWays> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, LightSharing& sharing) {
   const auto& [frames, wish, media, pilot_of, sharing_of, shot] = looking;
   const int places = (kPilotPlaces + int(frames.size()) - 1) / int(frames.size());
-  std::vector<Look> looks;
+  std::vector<FrameWays> looks;
   for (const int frame : frames) {
     std::unique_ptr<FramePilot> pilot = pilot_of(frame);
     if (looks.empty()) sharing = sharing_of(*pilot);
-    looks.push_back(pilot->look(places, sharing, [&](const Look& look) {
+    looks.push_back(pilot->look(places, sharing, [&](const FrameWays& look) {
       const Decisions* const of_shot = looking.shot;
       if (of_shot && may_follow(look.ways, looking.frames.size(), looking.wish, looking.media, *of_shot)) return true;
       const std::optional<Way> best = best_of(look.ways, looking.wish, looking.media);
@@ -77,13 +77,14 @@ std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& m
     if (shot && may_follow(ways, frames.size(), wish, media, *shot)) break;
     const std::optional<Way> best = best_of(ways, wish, media);
     if (!best || looks[i].knows(best->method)) continue;
-    looks[i] = pilot_of(frames[i])->look(places, sharing, [&](const Look& look) { return look.knows(best->method); });
+    looks[i] =
+        pilot_of(frames[i])->look(places, sharing, [&](const FrameWays& look) { return look.knows(best->method); });
     i = std::size_t(-1);  // the best way may have changed
   }
   return looks;
 }
 
-bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const Decisions& shot) {
+bool departs(const std::vector<FrameWays>& looks, const Wish& wish, bool media, const Decisions& shot) {
   const std::vector<Way> ways = joined_ways(looks);
   const std::optional<Way> best = best_of(ways, wish, media);
   if (!best) return false;
@@ -92,7 +93,7 @@ bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const
   if (of_shot->never > best->never || of_shot->uncertain > best->uncertain) return true;
   // Mean and standard error of log(score of the shot's way / score of the best way) over the frames.
   double n = 0, sum = 0, squares = 0;
-  for (const Look& look : looks) {
+  for (const FrameWays& look : looks) {
     const Way* const shots = find_way(look.ways, shot.indirect, shot.caustic_map);
     const Way* const bests = find_way(look.ways, best->method, best->map);
     if (!shots || !bests) continue;

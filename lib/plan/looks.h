@@ -12,7 +12,7 @@
 namespace tempolux {
 
 /// The ways of all frames together (joined() in choose_light.h).
-std::vector<Way> joined_ways(const std::vector<Look>& looks);
+std::vector<Way> joined_ways(const std::vector<FrameWays>& looks);
 /// The best allowed way, if any is allowed by the user and the scene. Media exclude paths, because photons light media.
 std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool media);
 
@@ -22,15 +22,15 @@ struct Looking {
   const Wish& wish;
   bool media;
   std::function<std::unique_ptr<FramePilot>(int)> pilot_of;
-  std::function<Sharing(const FramePilot&)> sharing_of;
+  std::function<LightSharing(const FramePilot&)> sharing_of;
   const Decisions* shot;  ///< its way must be measured, too; null: there is no shot
 };
 /// Measures each frame until its own best way has been measured, or until the segment may follow the shot. If the best
 /// way of the whole segment is not measured at some of the frames, measures these frames again until it is. Sets
 /// `middle` to the pilot of the frame in the middle.
-std::vector<Look> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, Sharing& sharing);
+std::vector<FrameWays> look_at(const Looking& looking, std::unique_ptr<FramePilot>& middle, LightSharing& sharing);
 
 /// Does the segment have to depart from the shot's way to light? (decide.h)
-bool departs(const std::vector<Look>& looks, const Wish& wish, bool media, const Decisions& shot);
+bool departs(const std::vector<FrameWays>& looks, const Wish& wish, bool media, const Decisions& shot);
 
 }  // namespace tempolux

@@ -15,7 +15,7 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
       moving_(std::move(moving)) {
   std::vector<IrradianceRecord> updated(static_records.begin(), static_records.end());
   for (std::size_t i = 0; i < updated.size(); ++i)
-    for (int c = 0; c < 3; ++c) updated[i].irradiance[c] = std::max(0.0f, changes[i].update[c]);
+    for (int c = 0; c < 3; ++c) updated[i].irradiance[c] = std::max(0.0f, changes[i].updated_irradiance[c]);
   updated_.add(updated);
   gathered_.add(gathered);
 }

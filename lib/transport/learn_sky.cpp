@@ -6,6 +6,7 @@
 
 #include "lib/core/frame.h"
 #include "lib/core/parallel_each.h"
+#include "lib/core/pi.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/transport/media.h"
@@ -13,36 +14,103 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRays = 4;  ///< of a place (figures: docs/methods/lights.md)
+/// Rays of a place: first by the cosine, then as many by what the first ones have found (docs/methods/lights.md).
+constexpr std::uint32_t kRays = 4;
 constexpr std::uint64_t kSeed = 0x736b79;
 
-/// Appends the rays of place `number` that see the environment, weighed by the radiance that arrives.
-void add_hits(const Tracer& tracer, const Lights& lights, const SeenPlace& from, std::uint32_t number,
-              std::vector<SkyGuide::Hit>& hits) {
-  const Frame axes(from.normal);
-  const PathRandom random(kSeed, number);
-  for (std::uint32_t i = 0; i < kRays; ++i) {
-    const Vec3 travel = axes.to_world(sample_hemisphere_cos(random.get2(i, Purpose::scatter)));
-    if (!(dot(travel, from.geometric) > 0)) continue;
-    const Rgb passed = transmittance(tracer, spawn_ray(from.surface, travel), {random, i, way_shadow});
-    const float weight = max_component(passed * lights.environment(travel));
-    if (weight > 0) hits.push_back({number, travel, weight});
+class SkyLearner {
+ public:
+  SkyLearner(const Tracer& tracer, const Lights& lights, std::span<const SeenPlace> places)
+      : tracer_(tracer), lights_(lights), places_(places) {
+    senders_.resize(places.size());
+    parallel_each(places.size(), 64, [&](std::size_t i) {
+      senders_[i] = {places[i].surface.position, places[i].normal, lamps_at(places[i], i)};
+    });
   }
-}
+
+  std::shared_ptr<const SkyGuide> learn() const {
+    const auto first = std::make_shared<const SkyGuide>(senders_, hits_by_cosine(), int(kRays));
+    if (first->empty()) return nullptr;
+    return std::make_shared<const SkyGuide>(senders_, hits_by(*first), int(2 * kRays));
+  }
+
+ private:
+  /// SkyGuide::Place::lamps
+  float lamps_at(const SeenPlace& at, std::uint64_t place) const {
+    const PathRandom random(kSeed, place);
+    LightSample light;
+    double unshadowed = 0, irradiance = 0;
+    if (lights_.sample_placed(at.surface.position, at.normal, random.get2(0, Purpose::light_point), light,
+                              unshadowed) &&
+        dot(light.wi, at.normal) > 0 && dot(light.wi, at.geometric) > 0) {
+      const Ray shadow = spawn_shadow_ray(at.surface, light.position, light.position_offset);
+      irradiance = max_component(light.facing_irradiance * transmittance(tracer_, shadow, {random, 0, way_shadow})) *
+                   dot(light.wi, at.normal);
+    }
+    return unshadowed > 0 ? float(irradiance * irradiance / (unshadowed * unshadowed)) : -1;
+  }
+
+  template <class Add>
+  std::vector<SkyGuide::Hit> hits(const Add& add) const {
+    return parallel_found<SkyGuide::Hit>(places_.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& found) {
+      add(places_[i], std::uint32_t(i), found);
+    });
+  }
+
+  /// Appends a ray if it sees the environment. `share`: cos / pi over its pdf.
+  void add(const SeenPlace& from, std::uint32_t place, std::uint32_t ray, Vec3 travel, float share,
+           std::vector<SkyGuide::Hit>& found) const {
+    if (!(dot(travel, from.geometric) > 0)) return;
+    const Rgb passed =
+        transmittance(tracer_, spawn_ray(from.surface, travel), {PathRandom(kSeed, place), ray, way_shadow});
+    const float weight = max_component(passed * lights_.environment(travel)) * share;
+    if (weight > 0) found.push_back({place, travel, share, weight});
+  }
+
+  static Vec3 by_cosine(const SeenPlace& from, std::uint32_t place, std::uint32_t ray) {
+    const PathRandom random(kSeed, place);
+    return Frame(from.normal).to_world(sample_hemisphere_cos(random.get2(ray, Purpose::scatter)));
+  }
+
+  std::vector<SkyGuide::Hit> hits_by_cosine() const {
+    return hits([&](const SeenPlace& from, std::uint32_t place, std::vector<SkyGuide::Hit>& found) {
+      for (std::uint32_t i = 0; i < kRays; ++i) add(from, place, i, by_cosine(from, place, i), 1, found);
+    });
+  }
+
+  /// kRays rays by the cosine and kRays rays by the grids, all weighted by the pdf of both together.
+  std::vector<SkyGuide::Hit> hits_by(const SkyGuide& guide) const {
+    return hits([&](const SeenPlace& from, std::uint32_t place, std::vector<SkyGuide::Hit>& found) {
+      const SkyGuide::Grid* const grid = guide.grid_of(guide.at(from.surface.position, from.normal));
+      const PathRandom random(kSeed, place);
+      for (std::uint32_t i = 0; i < 2 * kRays; ++i) {
+        Vec3 travel;
+        if (!grid || i < kRays) {
+          travel = by_cosine(from, place, i);
+        } else {
+          const Vec2 u = random.get2(i, Purpose::scatter);
+          travel = grid->sample(double(u.x), double(u.y));
+        }
+        const double cosine = std::max(0.0f, dot(travel, from.normal)) / kPiD;
+        if (!(cosine > 0)) continue;
+        const double share = grid ? 2 * cosine / (cosine + grid->pdf_solid_angle(travel)) : 1;
+        add(from, place, i, travel, float(share), found);
+      }
+    });
+  }
+
+  const Tracer& tracer_;
+  const Lights& lights_;
+  std::span<const SeenPlace> places_;
+  std::vector<SkyGuide::Place> senders_;
+};
 
 }  // namespace
 
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
                                           std::span<const SeenPlace> places) {
   if (!lights.has_environment()) return nullptr;
-  std::vector<SkyGuide::Hit> hits =
-      parallel_found<SkyGuide::Hit>(places.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& found) {
-        add_hits(tracer, lights, places[i], std::uint32_t(i), found);
-      });
-  std::vector<SkyGuide::Place> senders;
-  for (const SeenPlace& place : places) senders.push_back({place.surface.position, place.normal});
-  auto guide = std::make_shared<const SkyGuide>(senders, std::move(hits), int(kRays));
-  return guide->empty() ? nullptr : guide;
+  return SkyLearner(tracer, lights, places).learn();
 }
 
 }  // namespace tempolux

@@ -171,9 +171,19 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
                    helper_frames(tool.common().frames, wish), wish.method == FrameMethod::still);
+  tool.stats().phase("pilots", true);
+  decide_segments(tool, wish, camera, folder);
+  tool.stats().phase("graph");
+  planned_.graph = graph(plan, wish);
+  for (const std::string& warning : plan.warnings) tool.warn(scene + ": " + warning);
+  planned_.warnings = tool.warnings();
+  if (folder) note_inputs(folder->inputs());
+}
+
+void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFolder* folder) {
+  Plan& plan = planned_.plan;
   const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); },
                            [&](int frame) { return input_.emission(frame); }, camera};
-  tool.stats().phase("pilots", true);
   const auto decided = [&](const PlannedSegment& segment, const std::string& key, const auto& make) {
     return folder ? folder->decisions(segment, hash_hex(key + tool_hash_("scene-plan")), make) : make();
   };
@@ -193,16 +203,14 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
     });
     if (is_measured) segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
   }
-  tool.stats().phase("graph");
-  planned_.graph = graph(plan, wish);
-  for (const std::string& warning : plan.warnings) tool.warn(scene + ": " + warning);
-  planned_.warnings = tool.warnings();
-  if (!folder) return;
-  for (const std::string& file : input_.scene().files) folder->inputs().hash_of(file);
+}
+
+void Planner::note_inputs(Inputs& inputs) const {
+  for (const std::string& file : input_.scene().files) inputs.hash_of(file);
   for (const std::string& file : input_.media_files()) {
-    folder->inputs().hash_of(file);
-    folder->inputs().hash_of(
-        fs::absolute(file).parent_path().string());  // a new or removed file in the folder is a change, too
+    inputs.hash_of(file);
+    // The list of the folder's files is an input, too: a new or removed file is a change.
+    inputs.hash_of(fs::absolute(file).parent_path().string());
   }
 }
 

@@ -57,6 +57,11 @@ class Planner {
   Graph graph(const Plan& plan, const Wish& wish);
 
  private:
+  /// Makes the decisions of the shot and of each segment of planned_.plan. The folder, if any, keeps them.
+  void decide_segments(Tool& tool, const Wish& wish, int camera, PlanFolder* folder);
+  /// Stores the hashes of all files of the scene and of its media.
+  void note_inputs(Inputs& inputs) const;
+
   Inputs none_{""};
   ToolHash tool_hash_;  ///< of the programs in this program's folder, with all modules and with `recipes`
   SceneInput input_;

@@ -158,8 +158,8 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
   points[0].radius = 0.5f;
   const PointLookup lookup(points, 0.2f);
   const RecordChange change = record_changes(records, maps, lookup, 0)[0];
-  EXPECT_LT(change.update.g, 10);
-  EXPECT_NEAR(change.update.g, 10 - 2.5f, 4 * 2.5f / std::sqrt(19.6f));
+  EXPECT_LT(change.updated_irradiance.g, 10);
+  EXPECT_NEAR(change.updated_irradiance.g, 10 - 2.5f, 4 * 2.5f / std::sqrt(19.6f));
   EXPECT_NEAR(change.influence, 25, 4 * 25 / std::sqrt(196.0f));
 }
 

@@ -27,7 +27,7 @@ SkyGuide guide_through_window() {
     const PathRandom random(3, i);
     for (std::uint32_t k = 0; k < 4; ++k)
       if (const Vec3 d = Vec3(sample_hemisphere_cos(random.get2(k, Purpose::test))); through_window({d.x, d.z, d.y}))
-        hits.push_back({i, {d.x, d.z, d.y}, 1});
+        hits.push_back({i, {d.x, d.z, d.y}, 1, 1});
   }
   return {places, hits, 4};
 }
@@ -59,47 +59,84 @@ Environment sky() {
   return map;
 }
 
+const SkyGuide::Grid* grid_at(const SkyGuide& guide, Vec3 position, Vec3 normal) {
+  return guide.grid_of(guide.at(position, normal));
+}
+
+// Seen to fail: the box of the hits taken from the azimuth before the widest gap.
 TEST(SkyGuide, DensityIntegratesToOneAndIsThatOfTheSamples) {
   const SkyGuide guide = guide_through_window();
-  const SkyGuide::Grid* const grid = guide.at({0.3f, 0, 0}, kUp);
+  const SkyGuide::Grid* const grid = grid_at(guide, {0.3f, 0, 0}, kUp);
   ASSERT_NE(grid, nullptr);
-  // Cells have equal solid angles, so the mean over their middles is the integral over 4 pi.
+  // Directions of equal solid angle. Its cells cut the edges of those of the grid, so the sum errs by about 1 / 1024.
+  constexpr int kFine = 1024;
   double sum = 0;
-  for (int row = 0; row < SkyGuide::kRows; ++row)
-    for (int column = 0; column < SkyGuide::kColumns; ++column) {
-      const double y = 1 - 2 * (row + 0.5) / SkyGuide::kRows, phi = 2 * kPiD * (column + 0.5) / SkyGuide::kColumns,
-                   across = std::sqrt(1 - y * y);
+  for (int row = 0; row < kFine; ++row)
+    for (int column = 0; column < 2 * kFine; ++column) {
+      const double y = 1 - 2 * (row + 0.5) / kFine, phi = kPiD * (column + 0.5) / kFine, across = std::sqrt(1 - y * y);
       sum += grid->pdf_solid_angle({float(across * std::cos(phi)), float(y), float(across * std::sin(phi))});
     }
-  EXPECT_NEAR(sum / (SkyGuide::kRows * SkyGuide::kColumns) * 4 * kPiD, 1, 1e-5);
-  // The mean of 1 / pdf over a region is its solid angle.
+  EXPECT_NEAR(sum / (2.0 * kFine * kFine) * 4 * kPiD, 1, 0.01);
+  // The mean of 1 / pdf over a region is its solid angle. The box around the hits may miss a little of the window.
   const Mean window = mean_of(1 << 16, [&](const PathRandom& random) {
     const Vec3 d =
         grid->sample(unit_double(random.bits(0, Purpose::test, 0)), unit_double(random.bits(0, Purpose::test, 1)));
     EXPECT_NEAR(length(d), 1, 1e-5);
     return through_window(d) ? 1 / grid->pdf_solid_angle(d) : 0;
   });
-  EXPECT_NEAR(window.mean, 2 * kPiD * 0.03, 3 * window.error);
+  EXPECT_LT(window.mean, 2 * kPiD * 0.03 + 3 * window.error);
+  EXPECT_GT(window.mean, 0.95 * 2 * kPiD * 0.03);
 }
 
 TEST(SkyGuide, HasNoGridWhereMuchIsSeenOrNothing) {
   const SkyGuide guide = guide_through_window();
-  EXPECT_EQ(guide.at({}, {0, -1, 0}), nullptr);  // no place faces down
+  EXPECT_EQ(grid_at(guide, {}, {0, -1, 0}), nullptr);  // no place faces down
   EXPECT_EQ(guide.at({}, {}), nullptr);
   std::vector<SkyGuide::Place> places(200, {{}, kUp});
   std::vector<SkyGuide::Hit> hits;
-  for (std::uint32_t i = 0; i < 200; ++i) hits.push_back({i, kUp, 1});
-  for (const int rays : {1, 4, 9}) EXPECT_TRUE(SkyGuide(places, hits, rays).empty()) << rays;
-  EXPECT_FALSE(SkyGuide(places, hits, 11).empty());  // less than a tenth
+  for (std::uint32_t i = 0; i < 200; ++i) hits.push_back({i, kUp, 1, 1});
+  for (const int rays : {1, 4, 9}) EXPECT_EQ(grid_at(SkyGuide(places, hits, rays), {}, kUp), nullptr) << rays;
+  EXPECT_NE(grid_at(SkyGuide(places, hits, 11), {}, kUp), nullptr);  // less than a tenth
+}
+
+/// Rays by cos / pi that see a sky of radiance 1 with the chance f estimate the irradiance pi f. Rays of twice the pdf
+/// have the share 1/2, and twice as many are hits. Seen to fail: weights that leave out the share.
+TEST(SkyGuide, EstimatesIrradiance) {
+  for (const float share : {1.0f, 0.5f}) {
+    std::vector<SkyGuide::Place> places(1000, {{}, kUp, 0.25f});
+    std::vector<SkyGuide::Hit> hits;
+    for (std::uint32_t i = 0; i < 1000; i += share < 1 ? 10 : 20) hits.push_back({i, kWindow, share, share});
+    const SkyGuide guide(places, hits, 2);
+    const SkyGuide::Part* const part = guide.at({}, kUp);
+    ASSERT_NE(part, nullptr);
+    EXPECT_NEAR(part->irradiance, kPiD * 50 / 2000, 1e-6);
+    EXPECT_NEAR(part->lamps, 0.5, 1e-6);
+  }
+}
+
+/// Where a tenth of the samples of lamps and a fortieth of the sky's cosine arrive, the sky has the smaller part of the
+/// samples. The unguided choice takes the sky unshadowed.
+TEST(SkyGuide, SkyBehindWallsIsDrawnSeldom) {
+  Environment map = sky();
+  LightScene scene;
+  scene.frame.environment = &map;
+  scene.add(PunctualLight::Kind::point, Rgb(1.0f), {0, 2, 1}, {});
+  const Lights plain = scene.lights(), guided = plain.guided(std::make_shared<SkyGuide>(guide_through_window()));
+  const auto sky_share = [](const Lights& lights) {
+    return mean_of(1 << 14,
+                   [&](const PathRandom& random) {
+                     LightSample s;
+                     lights.sample({0.3f, 0, 0}, kUp, random.get2(0, Purpose::light_point), s);
+                     return double(s.distant);
+                   })
+        .mean;
+  };
+  EXPECT_LT(sky_share(guided), sky_share(plain) / 1.2);
 }
 
 /// Irradiance of the whole sky, which the guide misleads about, and of the window alone.
 TEST(SkyGuide, MeansAreTheSameAndWindowsHaveLessNoise) {
   const Environment map = sky();
-  LightScene scene;
-  scene.frame.environment = &map;
-  scene.add(PunctualLight::Kind::point, Rgb(3.0f), {0, 2, 1}, {});
-  const Lights plain = scene.lights(), guided = plain.guided(std::make_shared<SkyGuide>(guide_through_window()));
   const auto irradiance = [](const Lights& lights, bool window) {
     return mean_of(kSamples, [&](const PathRandom& random) {
       LightSample s;
@@ -111,12 +148,17 @@ TEST(SkyGuide, MeansAreTheSameAndWindowsHaveLessNoise) {
                  : double(s.facing_irradiance.g) * std::max(0.0f, dot(s.wi, kUp));
     });
   };
+  // The window's light is measured without the lamp: beside it the guide draws the sky more seldom.
   for (const bool window : {false, true}) {
+    LightScene scene;
+    scene.frame.environment = &map;
+    if (!window) scene.add(PunctualLight::Kind::point, Rgb(3.0f), {0, 2, 1}, {});
+    const Lights plain = scene.lights(), guided = plain.guided(std::make_shared<SkyGuide>(guide_through_window()));
     const Mean a = irradiance(plain, window), b = irradiance(guided, window);
     EXPECT_NEAR(a.mean, b.mean, 3 * std::hypot(a.error, b.error)) << window;
-    // The mean square is at most 1 / kUnguidedShare times that without a guide.
+    // The guide leaves the sky at least .2 of the samples in place of at most .8, and radiance kUnguidedShare of them.
     const double square = a.error * a.error + (window ? 0 : a.mean * a.mean / kSamples);
-    EXPECT_LT(b.error * b.error, (window ? 0.25 : 1 / kUnguidedShare) * square);
+    EXPECT_LT(b.error * b.error, (window ? 0.25 : 4 / kUnguidedShare) * square);
   }
 }
 

@@ -72,7 +72,7 @@ TEST(LocalisedLight, WhatIsMissingIsNotMadeUp) {
 
 TEST(LocalisedLight, BelowZeroIsCutWhereItIsShown) {
   Records dark;
-  dark.changes[0].update = {-1, 2, 0};
+  dark.changes[0].updated_irradiance = {-1, 2, 0};
   const auto e = dark.light().at(place({0, 0, 0}), kUp);
   ASSERT_TRUE(e);
   EXPECT_EQ(e->r, 0);
@@ -81,7 +81,7 @@ TEST(LocalisedLight, BelowZeroIsCutWhereItIsShown) {
 
 TEST(LocalisedLight, EqualRecordsBlendToThemselves) {
   Records same;
-  for (RecordChange& change : same.changes) change.update = Rgb(4.0f);
+  for (RecordChange& change : same.changes) change.updated_irradiance = Rgb(4.0f);
   const LocalisedLight light = same.light();
   for (float x : {0.0f, 10.0f, 20.0f}) EXPECT_NEAR(at(light, place({x, 0, 0})), 4, 1e-6f);
 }

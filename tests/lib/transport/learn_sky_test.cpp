@@ -98,7 +98,7 @@ TEST(LearnSky, DoesNotDependOnThreadsAndNeedsASky) {
     const auto guide = learn_sky(tracer, lights, Room::floor());
     std::vector<double> found;
     for (const SeenPlace& place : Room::floor()) {
-      const SkyGuide::Grid* const grid = guide->at(place.surface.position, kUp);
+      const SkyGuide::Grid* const grid = guide->grid_of(guide->at(place.surface.position, kUp));
       found.push_back(grid ? grid->pdf_solid_angle(normalize(Vec3{0.1f, 0.3f, 1})) : -1);
     }
     return found;
