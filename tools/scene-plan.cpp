@@ -27,7 +27,7 @@ namespace {
 void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
   Wish& wish = options.wish;
   tool.choice_option("--quality", options.quality, {"draft", "final"},
-                     "draft: more noise, in less than half of the time; final");
+                     "draft: fewer samples and more noise; final");
   tool.choice_option(
       "--method", options.method, {"frames", "walkthrough", "auto", "preview", "still"},
       "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
