@@ -70,9 +70,9 @@ float noise_factor(const GatherCounts& counts);
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 /// Sets the radius of a gathered record to radius_of(). radius_unclamped, which is R before, becomes r without the
-/// limit by min_radius_px. Reduces the translational gradient by the ratio of radius_unclamped and radius: a gradient
-/// next to a wall is large, noisy and valid only within the smaller radius [Jakob, Mitsuba 0.6]. Then reduces the
-/// gradient until the irradiance is not negative within the radius.
+/// limit by min_radius_px. If radius_unclamped is the smaller of the two, multiplies the translational gradient by
+/// radius_unclamped / radius: next to a wall the gradient is large, noisy and valid within radius_unclamped only
+/// [Jakob, Mitsuba 0.6]. Then reduces the gradient so far that the irradiance is not negative within the radius.
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 }  // namespace tempolux

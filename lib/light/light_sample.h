@@ -20,8 +20,8 @@ struct LightSample {
   /// probability of choosing the light. Multiplied by f cos it gives reflected radiance.
   Rgb facing_irradiance{0.0f};
   float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 if `only_sampled`
-  /// True for point, spot and directional lights. No ray meets them, whatever their size: a light sample counts in
-  /// full, without a MIS weight.
+  /// True for point, spot and directional lights. No ray meets these lights, whatever their size. So their samples
+  /// count in full, without a MIS weight.
   bool only_sampled = false;
   bool distant = false;  ///< true for the environment and directional lights
 };
@@ -30,7 +30,7 @@ struct LightSample {
 struct PhotonEmission {
   Vec3 origin{}, travel{};  ///< scene space, m; unit direction of flight
   float origin_offset = 0;  ///< m; the photon starts this far along the emitting side's normal
-  Vec3 normal{};            ///< of the emitting side; zero for distant lights and lights without size
+  Vec3 normal{};            ///< unit normal of the emitting side; zero for distant lights and lights without size
   /// m; above 0 for a lamp that is a sphere, whose far side lies this far behind `origin`. If surfaces lie on this
   /// chord, the lamp lights them as well, with a second photon of this flux that starts at the far side and ends here.
   float chord = 0;

@@ -19,13 +19,7 @@ double sun_weight(const PlacedLight& placed, Vec3 normal) {
   return normal == Vec3{} ? e : e * std::max(0.0f, 0.5f * placed.light.size.angle_rad - dot(normal, placed.direction));
 }
 
-/// Probability of choosing a distant light. `distant` and `others` are irradiances from both kinds of light, the second
-/// only an estimate; so if both are above 0, each kind gets at least a fifth.
-double share_of_distant(double distant, double others) {
-  return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
-}
-
-/// Least weight of the sky over its unshadowed one: where no ray of the guide saw it, a sample may.
+/// Least irradiance of the sky over its unshadowed irradiance: a sample may see the sky where no ray of the guide did.
 constexpr double kLeastSky = 1.0 / 256;
 
 }  // namespace
@@ -36,9 +30,17 @@ Lights Lights::guided(std::shared_ptr<const SkyGuide> guide) const {
   return lights;
 }
 
+/// The irradiance of the lights inside the scene is only an estimate. So if they shine as well, each kind gets at least
+/// a fifth.
+double Lights::Distant::share(double tree) const {
+  const double others = lamps * tree;
+  return !(all() > 0) ? 0 : others > 0 ? std::clamp(all() / (all() + others), 0.2, 0.8) : 1;
+}
+
 /// The sky counts with the irradiance that the guide has learned, which walls reduce. Suns count unshadowed, so beside
 /// them the sky counts unshadowed, too.
 Lights::Distant Lights::distant_at(Vec3 point, Vec3 normal, From from) const {
+  if (!has_distant()) return {};
   Distant distant{.sky = environment_weight_};
   if (from == From::all)
     for (const std::uint32_t i : suns_) distant.suns += sun_weight(frame_->lights[i], normal);
@@ -118,8 +120,8 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
 bool Lights::sample_any(Vec3 point, Vec3 normal, const Draw& draw, From from, LightSample& sample) const {
   sample = {};
   const LightTree::Start start = tree_.start(point, normal);
-  const Distant distant = has_distant() ? distant_at(point, normal, from) : Distant{};
-  const double share = distant.all() > 0 ? share_of_distant(distant.all(), distant.lamps * start.sum) : 0;
+  const Distant distant = distant_at(point, normal, from);
+  const double share = distant.share(start.sum);
   if (draw.choice < share) {
     // Distant lights use the remainder of the choice in place of u.x, even if the two are different numbers.
     return sample_distant(point, normal, {draw.choice, draw.u.y}, share, distant, sample) &&
@@ -167,9 +169,8 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (light == kNone) return 0;
   const double on_triangle = triangles_[slot].pdf_solid_angle(point, on_light);
   if (!(on_triangle > 0)) return 0;
-  const Distant distant = has_distant() ? distant_at(point, normal, from) : Distant{};
-  const double share =
-      distant.all() > 0 ? share_of_distant(distant.all(), distant.lamps * tree_.start(point, normal).sum) : 0;
+  const Distant distant = distant_at(point, normal, from);
+  const double share = distant.all() > 0 ? distant.share(tree_.start(point, normal).sum) : 0;
   const float pdf = float(on_triangle * (1 - share) * tree_.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
@@ -178,7 +179,7 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
                               From from) const {
   if (!(environment_weight_ > 0)) return 0;
   const Distant distant = distant_at(point, normal, from);
-  const double share = share_of_distant(distant.all(), distant.lamps * tree_.start(point, normal).sum),
+  const double share = distant.share(tree_.start(point, normal).sum),
                directed = sky(distant.grid).pdf_solid_angle(place, direction);
   const float pdf = float(directed * share * distant.sky / distant.all());
   return pdf < INFINITY ? pdf : 0;

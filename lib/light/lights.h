@@ -191,12 +191,14 @@ class Lights {
                    LightSample& sample) const;
   bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, const Draw& draw,
                    LightSample& sample) const;
-  /// Distant lights at a place: their irradiances [W/m^2] as choices weigh them, and what the guide knows.
+  /// The distant lights at a place.
   struct Distant {
-    double sky = 0, suns = 0;
-    double lamps = 1;  ///< what the irradiance of the light tree is multiplied by
-    const SkyGuide::Grid* grid = nullptr;
+    double sky = 0, suns = 0;              ///< irradiances [W/m^2] by which sample() chooses
+    double lamps = 1;                      ///< arriving part of the light tree's irradiance (SkyGuide::Part::lamps)
+    const SkyGuide::Grid* grid = nullptr;  ///< of the sky's directions; null: none
     double all() const { return sky + suns; }
+    /// Probability of choosing a distant light. `tree`: the light tree's irradiance at the place.
+    double share(double tree) const;
   };
   Distant distant_at(Vec3 point, Vec3 normal, From from) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double share, const Distant& distant,

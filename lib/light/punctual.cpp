@@ -18,7 +18,7 @@ double one_minus_cos(double angle) {
 
 /// Directions around an axis, uniform in the solid angle 2 pi end [sr].
 struct Cone {
-  double end;  ///< 1 - cosine of half the angle; 2: all directions
+  double end;  ///< 1 - cos a, where a is the angle between axis and edge; 2: the cone holds all directions
 
   /// 1 - cosine of the angle between the axis and the direction that a point of the unit disc stands for.
   double one_minus_cos(Vec2 disc) const { return end * std::min(1.0, length2(disc)); }

@@ -76,6 +76,8 @@ struct SkyGuide::Builder {
 
   std::uint32_t build(std::span<std::uint32_t> of, std::span<Hit> hits) const;
   std::uint32_t leaf(std::span<const std::uint32_t> of, std::span<const Hit> hits) const;
+  double sum_of_squares(const Grid& grid, std::span<const Hit> hits) const;
+  double lamps_at(std::span<const std::uint32_t> of) const;
 };
 
 SkyGuide::Grid::Grid(std::span<const Hit> hits) {
@@ -131,6 +133,26 @@ SkyGuide::Grid::Grid(std::span<const Hit> hits) {
     }
 }
 
+/// Sum over the rays of (radiance cos)^2 over the pdfs of the ray and of a sample of the grid: the mean square of the
+/// irradiance that one sample brings, times the number of rays.
+double SkyGuide::Builder::sum_of_squares(const Grid& grid, std::span<const Hit> hits) const {
+  double square = 0;
+  for (const Hit& hit : hits) {
+    const double cosine = std::max(0.0f, dot(places[hit.place].normal, hit.direction)),
+                 pdf = (1 - kUnguidedShare) * grid.pdf_solid_angle(hit.direction);
+    if (pdf > 0) square += double(hit.weight) * double(hit.weight / hit.share) * cosine * kPiD / pdf;
+  }
+  return square;
+}
+
+/// Part::lamps of these places.
+double SkyGuide::Builder::lamps_at(std::span<const std::uint32_t> of) const {
+  double lamps = 0, known = 0;
+  for (const std::uint32_t i : of)
+    if (places[i].lamps >= 0) lamps += double(places[i].lamps), ++known;
+  return known > 0 ? std::sqrt(lamps / known) : 1;
+}
+
 std::uint32_t SkyGuide::Builder::leaf(std::span<const std::uint32_t> of, std::span<const Hit> hits) const {
   const double sent = double(of.size()) * rays;
   double seen = 0, weight = 0;
@@ -140,19 +162,9 @@ std::uint32_t SkyGuide::Builder::leaf(std::span<const std::uint32_t> of, std::sp
   if (sent > 0) part.irradiance = kPiD * weight / sent;
   if (hits.size() >= kLeastHits && seen <= kMostSeen * sent) {
     part.grid = std::uint32_t(guide.grids_.size());
-    const Grid& grid = guide.grids_.emplace_back(hits);
-    double square = 0;
-    for (const Hit& hit : hits) {
-      const double cosine = std::max(0.0f, dot(places[hit.place].normal, hit.direction)),
-                   pdf = (1 - kUnguidedShare) * grid.pdf_solid_angle(hit.direction);
-      if (pdf > 0) square += double(hit.weight) * double(hit.weight / hit.share) * cosine * kPiD / pdf;
-    }
-    part.rms = std::sqrt(square / sent);
+    part.rms = std::sqrt(sum_of_squares(guide.grids_.emplace_back(hits), hits) / sent);
   }
-  double lamps = 0, known = 0;
-  for (const std::uint32_t i : of)
-    if (places[i].lamps >= 0) lamps += double(places[i].lamps), ++known;
-  if (known > 0) part.lamps = std::sqrt(lamps / known);
+  part.lamps = lamps_at(of);
   guide.parts_.push_back(part);
   return std::uint32_t(guide.nodes_.size() - 1);
 }

@@ -58,9 +58,10 @@ class SkyGuide {
     std::array<float, kRows * kColumns> column_end_{};    ///< cumulative shares inside the row
     std::array<float, kRows * kColumns> density_{};       ///< [1/sr]
   };
+  /// What the places of a part have learned.
   struct Part {
-    double irradiance = 0;  ///< from what the places see of the environment [W/m^2, largest channel]; mean
-    double rms = 0;         ///< root mean square of its estimates by one sample of the grid; 0 without a grid
+    double irradiance = 0;  ///< that arrives from the environment [W/m^2, largest channel]; mean over the places
+    double rms = 0;         ///< root mean square of estimates of `irradiance` by one sample of the grid; 0: no grid
     double lamps = 1;       ///< root of the mean of Place::lamps; 1: not known
     std::uint32_t grid = kNoGrid;
   };
@@ -68,7 +69,7 @@ class SkyGuide {
   const Part* at(Vec3 position, Vec3 normal) const;
   /// The grid of a part; null if there is none, also for null.
   const Grid* grid_of(const Part* part) const { return part && part->grid != kNoGrid ? &grids_[part->grid] : nullptr; }
-  bool empty() const { return parts_.empty(); }
+  bool has_grids() const { return !grids_.empty(); }
 
  private:
   struct Node {

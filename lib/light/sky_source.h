@@ -23,9 +23,8 @@ struct SkySource {
   static LightBounds bounds(const Box3&) { return {}; }
   /// Flux [W] through the scene sphere's disc from all directions.
   Rgbd flux() const { return map.integral() * aim.disc_area(); }
-  /// Draws a direction for a point by radiance, or from the grid. u is in [0, 1) and was
-  /// stretched from u_float.x, which has 24 random bits. `probability`: of choosing the environment. False if no light
-  /// comes from the direction.
+  /// Draws a direction for a point by radiance, or from the grid. u is in [0, 1) and was stretched from u_float.x,
+  /// which has 24 random bits. `probability`: of choosing the environment. False if no light comes from the direction.
   bool sample(Vec3 point, double probability, double u, Vec2 u_float, LightSample& s) const;
   /// pdf [1/sr] of a direction (unit), whose place is `place`, given that the environment is chosen.
   double pdf_solid_angle(const EnvironmentLight::Place& place, Vec3 direction) const;

@@ -23,10 +23,6 @@ namespace {
 
 using formats::PathKind;
 
-/// A light lies in a surface's plane if its distance from the plane is at most this multiple of the offset of rays that
-/// leave the surface (a few float steps).
-constexpr float kInPlane = 0.25f;
-constexpr int kMostPlanes = 8;           ///< largest number of coincident surfaces that contain a point light
 constexpr float kStepsPerCrossing = 10;  ///< least mean number of tentative collisions in a crossing of the media's box
 
 /// Kind of a photon by the events so far (formats/conventions.md).
@@ -391,75 +387,6 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
   if (watch_)
     for (std::size_t i = 0; i < path_numbers.size(); ++i)
       if (wave.touched[i]) batch.touched.push_back({path_numbers[i], wave.touched[i]});
-}
-
-/// Sends a path on along a ray from the place at which its photon arrived. False if the ray meets nothing; else hit and
-/// point number i of the wave are the new ones.
-bool PhotonTracer::fly_on(std::size_t i, const Ray& ray, Wave& wave, PhotonBatch& batch) const {
-  const std::uint32_t number = wave.alive[i];
-  Path& path = wave.paths[number];
-  Hit& hit = wave.hits[i];
-  path.ray = ray;
-  ++batch.ray_count;
-  const bool meets = tracer_.intersect(path.ray, hit);
-  if (watch_) wave.touched[number] |= watch_->touching(path.ray, meets ? hit.t : INFINITY);
-  if (meets && wave.moved) wave.moved[number] |= std::uint8_t(moves(hit));
-  if (meets) wave.points[i] = tracer_.surface_point(hit);
-  else path.balance->escaped += Rgbd(path.flux);
-  return meets;
-}
-
-/// Photons of a lamp that is a sphere start at its far side and cross it. One that meets a surface inside of the sphere
-/// stands for two, that which lights this surface and that which the lamp sends outwards (PhotonEmission::chord): it
-/// becomes one of them by chance, with twice the flux. The others left the sphere undisturbed, as if they started on
-/// its near side. Returns the number of photons that still arrive. Light that glass inside of the sphere lets out comes
-/// on top of the lamp's. In media photons start on the near side, so that they collide outside of the sphere alone, and
-/// surfaces inside are not lit.
-std::size_t PhotonTracer::leave_spheres_of_lamps(std::size_t arrived, Wave& wave, PhotonBatch& batch) const {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < arrived; ++i) {
-    const std::uint32_t number = wave.alive[i];
-    const PhotonEmission& e = wave.emissions[number];
-    Path& path = wave.paths[number];
-    bool meets = true;
-    if (wave.hits[i].t >= e.chord) {
-      wave.hits[i].t -= e.chord;
-    } else {
-      path.balance->emitted += Rgbd(path.flux);
-      path.flux *= 2;
-      if (path.random.get1(0, Purpose::light_choice) < 0.5f)
-        meets = fly_on(i, {e.origin, e.travel, 0, INFINITY}, wave, batch);
-    }
-    if (!meets) continue;
-    wave.alive[kept] = number;
-    wave.hits[kept] = wave.hits[i];
-    wave.points[kept++] = wave.points[i];
-  }
-  return kept;
-}
-
-/// Lets photons pass surfaces whose plane contains their point light. Such a surface receives nothing, because the
-/// cosine is 0 (light samples give 0, too). Without this function rounding would start half of the photons behind the
-/// plane, and they would bring half of the light's flux to one place. Returns the number of photons that still arrive.
-std::size_t PhotonTracer::leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < arrived; ++i) {
-    const std::uint32_t number = wave.alive[i];
-    const PhotonEmission& e = wave.emissions[number];
-    Path& path = wave.paths[number];
-    const auto in_plane = [&](const SurfacePoint& point) {
-      return e.normal == Vec3{} &&
-             std::abs(dot(point.position - e.origin, point.normal_geometric)) <= kInPlane * point.offset;
-    };
-    bool meets = true;
-    for (int plane = 0; meets && plane < kMostPlanes && in_plane(wave.points[i]); ++plane)
-      meets = fly_on(i, spawn_ray(wave.points[i], path.ray.direction), wave, batch);
-    if (!meets) continue;
-    wave.alive[kept] = number;
-    wave.hits[kept] = wave.hits[i];
-    wave.points[kept++] = wave.points[i];
-  }
-  return kept;
 }
 
 /// A photon's arrival and the surface where it arrives.

@@ -171,6 +171,8 @@ class PhotonTracer {
                     PhotonBatch& batch) const;
   void find_solids_of_lights();
   bool fly_on(std::size_t i, const Ray& ray, Wave& wave, PhotonBatch& batch) const;
+  template <class Arrives>
+  static std::size_t keep_arrived(std::size_t arrived, Wave& wave, const Arrives& arrives);
   std::size_t leave_spheres_of_lamps(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   bool moves(const Hit& hit) const { return hit.surface >= tracer_.frame().static_count; }
@@ -189,7 +191,7 @@ class PhotonTracer {
   PhotonHalton halton_;
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
   bool has_point_lights_ = false;  ///< true if there are point or spot lights
-  bool has_spheres_ = false;       ///< true if one of them has a size
+  bool has_spheres_ = false;       ///< true if a point or spot light has a size
   bool directions_ = false;
   std::optional<Media> media_;              ///< the frame's media, with raised majorants
   std::vector<char> solid_;                 ///< by material: true for the boundary of solid glass

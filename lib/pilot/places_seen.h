@@ -39,7 +39,7 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
 /// The scene's lights with a SkyGuide that has learned at kSkyPlaces places: half are SeenPlaces::places, half
-/// next_places. The lights as they are if there is no environment or the guide does not pay (learn_sky).
+/// next_places. The lights as they are if there is no environment.
 Lights guided_lights(const RenderScene& scene, const CameraView& view);
 
 }  // namespace tempolux

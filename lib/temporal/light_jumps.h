@@ -15,9 +15,10 @@ struct FramesInARow {
 };
 
 /// True if the lights or a surface jump between `previous` and `here`. A step is the change of flux, or of a surface's
-/// place, from one frame to the next. A jump is a step that is larger than twice the sum of the steps before and after
-/// it, and larger than 1/16 of the flux of all lights, or of the surface's size. If all lamps go on or off, light jumps
-/// in any case, even for a single frame. False if `previous` is null.
+/// place, from one frame to the next. A step is a jump if it is larger than twice the sum of the steps before and after
+/// it. A jump of flux must also be larger than 1/16 of the flux of all lights, a jump of a surface larger than 1/16 of
+/// the surface's size. Light always jumps if all lamps go on or off, even for a single frame. False if `previous` is
+/// null.
 bool light_jumps(const FramesInARow& frames);
 
 }  // namespace tempolux

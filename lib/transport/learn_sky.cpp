@@ -1,6 +1,7 @@
 #include "lib/transport/learn_sky.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace {
 constexpr std::uint32_t kRays = 4;
 constexpr std::uint64_t kSeed = 0x736b79;
 
+/// Learns at places by two passes of rays (learn_sky).
 class SkyLearner {
  public:
   SkyLearner(const Tracer& tracer, const Lights& lights, std::span<const SeenPlace> places)
@@ -29,13 +31,17 @@ class SkyLearner {
   }
 
   std::shared_ptr<const SkyGuide> learn() const {
-    const auto first = std::make_shared<const SkyGuide>(senders_, hits_by_cosine(), int(kRays));
-    if (first->empty()) return nullptr;
-    return std::make_shared<const SkyGuide>(senders_, hits_by(*first), int(2 * kRays));
+    std::vector<SkyGuide::Hit> first = hits_by_cosine(), all;
+    auto guide = std::make_shared<const SkyGuide>(senders_, first, int(kRays));
+    if (!guide->has_grids()) return guide;
+    const std::vector<SkyGuide::Hit> second = hits_by(*guide);
+    weigh_anew(*guide, first);
+    std::ranges::merge(first, second, std::back_inserter(all), {}, &SkyGuide::Hit::place, &SkyGuide::Hit::place);
+    return std::make_shared<const SkyGuide>(senders_, std::move(all), int(2 * kRays));
   }
 
  private:
-  /// SkyGuide::Place::lamps
+  /// Measures SkyGuide::Place::lamps by one light sample.
   float lamps_at(const SeenPlace& at, std::uint64_t place) const {
     const PathRandom random(kSeed, place);
     LightSample light;
@@ -78,25 +84,38 @@ class SkyLearner {
     });
   }
 
-  /// kRays rays by the cosine and kRays rays by the grids, all weighted by the pdf of both together.
+  const SkyGuide::Grid* grid_at(const SkyGuide& guide, const SeenPlace& from) const {
+    return guide.grid_of(guide.at(from.surface.position, from.normal));
+  }
+
+  /// cos / pi over the pdf of both passes together. grid: of the place; null: both passes drew by the cosine.
+  static float share_of(const SkyGuide::Grid* grid, const SeenPlace& from, Vec3 travel) {
+    const double cosine = std::max(0.0f, dot(travel, from.normal)) / kPiD;
+    if (!(cosine > 0)) return 0;
+    return grid ? float(2 * cosine / (cosine + grid->pdf_solid_angle(travel))) : 1;
+  }
+
+  /// The second pass: rays by the grids of the first pass, or by the cosine where there is no grid.
   std::vector<SkyGuide::Hit> hits_by(const SkyGuide& guide) const {
     return hits([&](const SeenPlace& from, std::uint32_t place, std::vector<SkyGuide::Hit>& found) {
-      const SkyGuide::Grid* const grid = guide.grid_of(guide.at(from.surface.position, from.normal));
+      const SkyGuide::Grid* const grid = grid_at(guide, from);
       const PathRandom random(kSeed, place);
-      for (std::uint32_t i = 0; i < 2 * kRays; ++i) {
-        Vec3 travel;
-        if (!grid || i < kRays) {
-          travel = by_cosine(from, place, i);
-        } else {
-          const Vec2 u = random.get2(i, Purpose::scatter);
-          travel = grid->sample(double(u.x), double(u.y));
-        }
-        const double cosine = std::max(0.0f, dot(travel, from.normal)) / kPiD;
-        if (!(cosine > 0)) continue;
-        const double share = grid ? 2 * cosine / (cosine + grid->pdf_solid_angle(travel)) : 1;
-        add(from, place, i, travel, float(share), found);
+      for (std::uint32_t i = kRays; i < 2 * kRays; ++i) {
+        const Vec2 u = random.get2(i, Purpose::scatter);
+        const Vec3 travel = grid ? grid->sample(double(u.x), double(u.y)) : by_cosine(from, place, i);
+        add(from, place, i, travel, share_of(grid, from, travel), found);
       }
     });
+  }
+
+  /// Gives the hits of the first pass the weights that they have beside the second.
+  void weigh_anew(const SkyGuide& guide, std::vector<SkyGuide::Hit>& first) const {
+    for (SkyGuide::Hit& hit : first) {
+      const SeenPlace& from = places_[hit.place];
+      hit.share = share_of(grid_at(guide, from), from, hit.direction);
+      hit.weight *= hit.share;
+    }
+    std::erase_if(first, [](const SkyGuide::Hit& hit) { return !(hit.weight > 0); });
   }
 
   const Tracer& tracer_;

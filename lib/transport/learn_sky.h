@@ -18,14 +18,14 @@ struct SeenPlace {
   bool exists() const { return normal != Vec3{}; }
 };
 
-/// Number of places for a guide. If one ray in fifty finds a window, the first rays of all places make 1300 hits, enough
-/// for 10 to 20 parts (SkyGuide), and the second rays some 20 times as many.
+/// Number of places for a guide. If one ray in fifty finds a window, the first rays of all places make 1300 hits,
+/// enough for 10 to 20 parts (SkyGuide). The second rays make more.
 inline constexpr std::size_t kSkyPlaces = 16384;
 
-/// Makes a guide from rays and light samples of places, all of which must exist. Each place sends four rays with the pdf
-/// cos / pi [1/sr] about the shading normal, and then as many by the grids that the first rays of all places have made.
-/// It also takes one sample of the lights inside the scene. Null if there is no environment. Same result for any number
-/// of threads.
+/// Makes a guide from rays and light samples of places, all of which must exist. Each place sends four rays with the
+/// pdf cos / pi [1/sr] about the shading normal, and then as many by the grids that the first rays of all places have
+/// made; without a grid it sends no more. It also takes one sample of the lights inside the scene. Null if there is no
+/// environment. Same result for any number of threads.
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
                                           std::span<const SeenPlace> places);
 

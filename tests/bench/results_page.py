@@ -60,8 +60,10 @@ def page_of(row):
     if row.get("paper"):
         text += f"The paper reports: {row['paper']}.\n\n"
     if row.get("stale"):
-        text += (f"This page is stale: the tree has changed since it was measured, first at commit {row['stale']['since']}. "
-                 f"Small chains stand for this measurement (canaries.py). They show what is different today:\n\n"
+        text += ("This page is stale. The tree has changed since the measurement, first at commit "
+                 f"{row['stale']['since']}.\n"
+                 "Small chains of commands, the canaries (tests/bench/canaries.py), are run in place of the whole\n"
+                 "measurement. The following list says what they do differently today:\n\n"
                  f"{''.join(changes_of_chains(row['stale']['what']))}\n")
     return text + table(row["header"], row["rows"]) + "".join(f"\n{note}\n" for note in row["notes"])
 
@@ -109,19 +111,21 @@ def write(rows, parts, page, folder, left_out):
 that is run by continuous integration, makes the same data with as many instructions; else it is marked as stale and stays. Missed rows
 stand first. Each row's page in {link} has all numbers, its command and its machine.
 
-**Words.** CPU seconds are user and system time of all threads and processes. Processors differ in speed, so limits in seconds are for
-normalised CPU seconds: measured ones times the rate of the bare walk (Embree alone on S2, tests/bench/bare_walk, million photons per CPU
-second of one thread, measured in the same run) divided by 5. A *code* is a step of an 8-bit picture; *seen error* is the root mean square
-of the differences in codes (tests/bench/seen.py). *Border over within*: noise between the last frame of a segment and the first frame of
-the next one, over the noise between frames of one segment. ~: extrapolated beyond the measured points.
+**Words.** CPU seconds are user and system time of all threads and processes. Processors differ in speed, so limits in
+seconds are for normalised CPU seconds: measured ones times the rate of the bare walk (Embree alone on S2,
+tests/bench/bare_walk, million photons per CPU second of one thread, measured in the same run) divided by 5. A *code*
+is a step of an 8-bit picture; *seen error* is the root mean square of the differences in codes (tests/bench/seen.py).
+*Border over within*: noise between the last frame of a segment and the first frame of the next one, over the noise
+between frames of one segment. ~: extrapolated beyond the measured points.
 
-**Papers.** A: T. Tawara, "Efficient Global Illumination for Dynamic Scenes". B: J.-R. Jimenez, K. Myszkowski, X. Pueyo, "Interactive
-Global Illumination in Dynamic Participating Media Using Selective Photon Tracing".
+**Papers.** A: T. Tawara, "Efficient Global Illumination for Dynamic Scenes". B: J.-R. Jimenez, K. Myszkowski, X.
+Pueyo, "Interactive Global Illumination in Dynamic Participating Media Using Selective Photon Tracing".
 
-**Scenes.** S1: a Cornell box. S2: the same, a box slides and turns. S3: a room behind a partition, which indirect light alone reaches. S4: an atrium with mirrors and
-glass, the camera walks. S5: a room with a window and a lamp that moves. S6: a room with smoke. S8: a room with a window by day, a robot
-moves. furnished_day: a furnished room by day, the camera stands. evening_shot: a house open to an evening sky. demo: the animation that
-`make -f Makefile.example` renders.
+**Scenes.** S1: a Cornell box. S2: the same, a box slides and turns. S3: a room behind a partition, which indirect
+light alone reaches. S4: an atrium with mirrors and glass, the camera walks. S5: a room with a window and a lamp that
+moves. S6: a room with smoke. S8: a room with a window by day, a robot moves. furnished_day: a furnished room by day,
+the camera stands. evening_shot: a house open to an evening sky. demo: the animation that `make -f Makefile.example`
+renders.
 
 """
     text += "".join(section(name, rows, parts, link, left_out) for name in SECTIONS if any(part.section == name for part in parts.values()))

@@ -126,6 +126,10 @@ def costs():
     return rows
 
 
+def twice(size):
+    return "x".join(str(2 * int(side)) for side in size.split("x"))
+
+
 def compared(test, reference, at):
     run("aqm-compare", test, reference, "--layer", "indirect", "--frames", at, "--json", "e.json", "--allow-stale")
     return stats("e.json")
@@ -138,7 +142,8 @@ def judge(judged):
     first = min(judged) // SEGMENT * SEGMENT
     seen = sorted({g for f in judged for g in (f - 1, f) if g >= 0})
     for g in seen:
-        anew(g, "r.irradcache", "--rays", 8000, "--seed", 1000, whole=True)
+        run("irradcache-build", "records", scene, "--frame", g, "--points", points(g), "--size", twice(options.size), "-o", "r.irradcache",
+            "--rays", 2000, "--error-bound", 0.1, "--seed", 1000)
         pixels("r.irradcache", g, f"reference.{g:04}.exr", *layer)
     for seed in range(options.seeds):
         run("gather-temporal", "final", scene, "--frames", f"{first}-{max(judged)}", *divided("####"), *size, "--refresh", options.refresh, "--seed", seed,

@@ -67,7 +67,7 @@ struct VolumeOptions {
   std::string majorants;                      ///< file from scene-plan; "": each frame has its own majorants
 };
 
-/// Options of the camera's lens and shutter, which replace the scene's values. Empty: the scene's value.
+/// Options of the camera's lens and shutter. A given option replaces the scene's value; an empty one keeps it.
 struct LensOptions {
   std::optional<double> f_stop, radius_m, sensor_width_mm;
   std::string focus;  ///< metres, or the name of a node

@@ -56,11 +56,11 @@ struct Room {
 struct Mean {
   double mean = 0, error = 0;
 };
-Mean irradiance(const Tracer& tracer, const Lights& lights, std::uint32_t n) {
-  const SurfacePoint place = place_at({0.4f, 0, 1.1f}, kUp);
+Mean irradiance(const Tracer& tracer, const Lights& lights, const SurfacePoint& place, std::uint32_t n,
+                std::uint64_t seed = 1) {
   double sum = 0, squares = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const PathRandom random(1, i);
+    const PathRandom random(seed, i);
     DirectSample direct;
     if (!sample_direct(lights, {place, kUp, kUp}, random.get1(0, Purpose::light_choice),
                        random.get2(0, Purpose::light_point), direct))
@@ -73,18 +73,38 @@ Mean irradiance(const Tracer& tracer, const Lights& lights, std::uint32_t n) {
 }
 
 TEST(LearnSky, SameIrradianceWithLessNoise) {
+  const SurfacePoint place = place_at({0.4f, 0, 1.1f}, kUp);
   for (const bool pane : {false, true}) {
     const Room room(1, pane);
     const Tracer tracer(room.frame);
     const Lights plain(room.frame, build_emission_table({&room.frame, 1}));
     const auto guide = learn_sky(tracer, plain, Room::floor());
     ASSERT_NE(guide, nullptr) << pane;
-    const Mean a = irradiance(tracer, plain, 1 << 17), b = irradiance(tracer, plain.guided(guide), 1 << 15);
+    const Mean a = irradiance(tracer, plain, place, 1 << 17),
+               b = irradiance(tracer, plain.guided(guide), place, 1 << 15);
     EXPECT_GT(a.mean, 0) << pane;
     EXPECT_NEAR(a.mean, b.mean, 3 * std::hypot(a.error, b.error)) << pane;
     // With a quarter of the samples: less than a quarter of the variance of a sample.
     EXPECT_LT(b.error, a.error) << pane;
   }
+}
+
+/// The mean over the floor of the irradiance that the guide has learned, against light samples without a guide. The
+/// grids of the first rays are made from the hits that they weigh, so the learned irradiance is a little low. Seen to
+/// fail: hits of the first rays that keep their weights beside the second rays (1.29).
+TEST(LearnSky, IrradianceIsThatOfLightSamples) {
+  const Room room;
+  const Tracer tracer(room.frame);
+  const Lights plain(room.frame, build_emission_table({&room.frame, 1}));
+  const std::vector<SeenPlace> floor = Room::floor();
+  const auto guide = learn_sky(tracer, plain, floor);
+  double learned = 0, sampled = 0;
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    learned += guide->at(floor[i].surface.position, kUp)->irradiance;
+    sampled += irradiance(tracer, plain, floor[i].surface, 64, i).mean;
+  }
+  EXPECT_GT(learned, 0.8 * sampled);
+  EXPECT_LT(learned, 1.1 * sampled);
 }
 
 TEST(LearnSky, DoesNotDependOnThreadsAndNeedsASky) {
