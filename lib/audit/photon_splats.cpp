@@ -33,7 +33,8 @@ Vec2 lens_of(const formats::Photon& photon) {
 }  // namespace
 
 /// True if a ray from the camera towards `place` first meets a surface about there, and comes from the side of
-/// `normal`. Sets the ray, its hit and the distance [m] of `place` from the camera.
+/// `normal` or may see light that a surface transmits. Sets the ray, its hit and the distance [m] of `place` from the
+/// camera.
 bool PhotonSplats::sees(Vec3 place, Vec3 normal, Vec2 lens, Hit& hit, Ray& ray, float& distance) const {
   if (view_.orthographic()) {
     const std::optional<std::array<double, 2>> raster = view_.project(place);
@@ -45,7 +46,7 @@ bool PhotonSplats::sees(Vec3 place, Vec3 normal, Vec2 lens, Hit& hit, Ray& ray, 
     distance = length(way);
     ray = {eye, way * (1 / distance), 0, INFINITY};
   }
-  if (!(distance > 0) || !(dot(normal, ray.direction) < 0)) return false;
+  if (!(distance > 0) || !(sees_through_ || dot(normal, ray.direction) < 0)) return false;
   if (!tracer_.intersect(ray, hit)) return false;
   return std::abs(hit.t - distance) <= kAlong * distance;
 }
@@ -67,16 +68,16 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   SurfacePoint point = tracer_.surface_point(hit);
   const Vec3 wo = -ray.direction;
   if (std::abs(dot(point.position - place, normal)) > kOff * distance) return std::nullopt;
-  if (dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0)
-    return std::nullopt;  // the other side of a thin wall
+  // The photon arrived on the other side of a thin wall.
+  const bool behind = dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0;
 
   const SceneFrame& frame = tracer_.frame();
   const Vec3 smooth = point.normal;
   RayCone cone = view_.cone();
   cone.advance(distance);
   const SurfaceMaterial material(frame, point, cone.width);
-  if (material.values().unlit) return std::nullopt;
-  const ShadingPoint x(point, wo, material);
+  if (material.values().unlit || (behind && !transmits_diffusely(material))) return std::nullopt;
+  const ShadingPoint x = behind ? ShadingPoint(point, -wo, from_behind(material)) : ShadingPoint(point, wo, material);
   if (!x.bsdf.has_diffuse()) return std::nullopt;
   Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local) * kInvPi * rgb_of(photon.flux);
   if (wi && photon.kind == formats::PathKind::caustic)

@@ -6,6 +6,7 @@
 
 #include "formats/photons/photons.h"
 #include "lib/render/camera_view.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/render/path_tracer.h"
 
 namespace tempolux {
@@ -28,6 +29,9 @@ struct Splat {
 /// solid angle of a pixel from there has the same form. For an orthographic camera the divisor is a. V is the
 /// transmittance of media and of the solid that the camera is in if a ray from the camera meets x, else 0.
 ///
+/// If x has a material that transmits diffusely and the camera sees its other side, rho is that of the lobe that
+/// transmits.
+///
 /// The sum over the photons of a map is an unbiased estimate of the layer of their kind, in each pixel and over any set
 /// of pixels, if the map stores all photons of this kind. It needs no density estimate, points or records. Light that
 /// the camera sees by mirrors and glass (layer specular) is not included.
@@ -38,7 +42,9 @@ class PhotonSplats {
  public:
   /// `tracer` and `view` must outlive this object.
   PhotonSplats(const Tracer& tracer, const CameraView& view, const Inside& camera_inside = {})
-      : tracer_(tracer), view_(view), camera_inside_(camera_inside) {}
+      : tracer_(tracer), view_(view), camera_inside_(camera_inside) {
+    for (const Material& material : tracer.frame().materials) sees_through_ |= transmits_diffusely(material);
+  }
 
   /// `shift` [m] is added to the photon's position to bring it into scene space. wi: its direction (unit, towards where
   /// it came from), if the map stores directions. Empty if the camera does not see the photon, or if its kind is volume
@@ -55,7 +61,8 @@ class PhotonSplats {
 
   const Tracer& tracer_;
   const CameraView& view_;
-  Inside camera_inside_;  ///< the absorbing solid that the camera is in
+  Inside camera_inside_;       ///< the absorbing solid that the camera is in
+  bool sees_through_ = false;  ///< true if a material transmits diffusely
 };
 
 }  // namespace tempolux

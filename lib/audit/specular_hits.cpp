@@ -78,10 +78,15 @@ void SpecularHits::follow(const RenderScene& scene, const Ray& ray, const PixelR
     if (chain.material().unlit) return;
     if (bounce > 0 && x.bsdf.has_diffuse()) {
       const float radius = kFootprints * widen * cone.width;
-      found.push_back(
-          {x, chain.ray().origin, x.normal_geometric, smooth,
-           weight * chain.passed() * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * kInvPi / (radius * radius)),
-           radius});
+      const auto add = [&](const ShadingPoint& side) {
+        found.push_back({side, chain.ray().origin, side.normal_geometric, smooth,
+                         weight * chain.passed() * side.bsdf.diffuse_reflectance(side.wo_local) *
+                             (kInvPi * kInvPi / (radius * radius)),
+                         radius});
+      };
+      add(x);
+      if (transmits_diffusely(chain.material()))
+        add({chain.point(), chain.ray().direction, from_behind(chain.material())});
     }
     if (!x.bsdf.has_specular()) return;
     const Scattered next(x, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));

@@ -6,6 +6,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/bright_points.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
@@ -24,6 +25,8 @@ constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
 /// Offset that separates the random numbers of media from the random numbers of events at surfaces.
 constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;
+/// The same for the choice of a side.
+constexpr std::uint64_t kSideNumbers = kMediaNumbers + 2;
 constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
 /// Light that is known at a surface where a gather ray starts, if a point represents the surface or records do.
 constexpr LightKinds kCausticKnown{LightKind::caustic};
@@ -35,6 +38,8 @@ struct IncomingRadiance::Met {
   SurfacePoint hit;
   Vec3 wo;                       ///< unit, towards the start of the ray
   Vec3 geometric;                ///< geometric normal on the side of wo
+  float chance = 1;              ///< probability with which the side was drawn from which the ray goes on
+  bool behind = false;           ///< true if that is the other side; then wo is turned round
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
   float leg = INFINITY;          ///< m: length of the path's last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
@@ -99,13 +104,25 @@ IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, c
 Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
   Met met;
   met.hit = place;
-  meet(normal, 0, 0, met);
+  look_at(normal, met);
   return *met.bsdf;
 }
 
 /// Fills in the rest of `met` if met.hit is known. `leg` [m]: length of the last straight part; `before` [m]: length of
 /// the path before that part. Evaluates the material's textures at the hit; a normal map changes met.hit.normal.
-inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) const {
+/// At a surface that transmits diffusely, draws the side from which the ray goes on, by random numbers of `key`.
+inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, std::uint64_t key, Met& met) const {
+  look_at(wo, met);
+  met.leg = leg;
+  met.distance = before + leg;
+  met.chance = 1;
+  met.behind = false;
+  if (transmits_diffusely(tracer_.frame().materials[met.hit.material])) [[unlikely]]
+    draw_side(key, met);
+}
+
+/// Sets Met::bsdf, wo and geometric.
+inline void IncomingRadiance::look_at(Vec3 wo, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
   if (tracer_.frame().materials[met.hit.material].textures || met.hit.plate > 0) [[unlikely]] {
@@ -115,8 +132,20 @@ inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) c
   }
   met.wo = wo;
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
-  met.leg = leg;
-  met.distance = before + leg;
+}
+
+void IncomingRadiance::draw_side(std::uint64_t key, Met& met) const {
+  SurfacePoint read = met.hit;
+  const SurfaceMaterial material(tracer_.frame(), read);
+  const SideChoice side = choose_side(*met.bsdf, SeenSide(met.hit, met.wo).wo_local, material,
+                                      PathRandom(key, kSideNumbers).get1(0, Purpose::side));
+  met.chance = side.probability;
+  met.behind = side.behind;
+  if (!side.behind) return;
+  met.wo = -met.wo;
+  met.geometric = -met.geometric;
+  met.bsdf = &met.textured.emplace(from_behind(material), dot(met.hit.normal_geometric, met.wo) > 0,
+                                   SeenSide(met.hit, met.wo).frame, Carries::radiance);
 }
 
 /// Calls take(i, met, point) for each ray i that meets a surface, where `point` is the point that represents the hit,
@@ -149,7 +178,7 @@ void IncomingRadiance::follow(std::span<const Ray> rays, GatherCounts& counts, c
         continue;
       }
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
-      meet(-ray.direction, length(met[i].hit.position - ray.origin), 0, met[i]);
+      meet(-ray.direction, length(met[i].hit.position - ray.origin), 0, key(first + i), met[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
     }
     const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
@@ -186,7 +215,8 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
           if (depth == 0) distance[i] = met.distance;
           radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
           if (from.phase > 0)
-            radiance[from.of] += from.weight * weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0);
+            radiance[from.of] +=
+                from.weight * weighed_emission(lights_, met.hit, -from.ray.direction, from.scattering(), 0);
         },
         [&](std::size_t i) { return now[i].key; },
         [&](std::size_t i, const MediumPoint& collision, float way) {
@@ -207,6 +237,19 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
 /// close, the ray continues, and `to.further` receives it. The other lobes are followed along one sampled direction.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
+  if (met.chance == 1) [[likely]]
+    return reflected_on_side(met, point, from, depth, to);
+  Further drawn = from;
+  drawn.weight *= 1 / met.chance;
+  // Bright points light the lobe that reflects. Light that the other lobe transmits is not divided.
+  if (met.behind) drawn.sampled_lobe = 0;
+  if (RadianceSource* const source = to.source_of(from)) source->partial = true;
+  return reflected_on_side(met, point, drawn, depth, to) / met.chance;
+}
+
+/// reflected() on the side from which the ray goes on.
+inline Rgb IncomingRadiance::reflected_on_side(const Met& met, const PointLookup::Light* point, const Further& from,
+                                               int depth, const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
   std::optional<SeenSide> side;
@@ -305,8 +348,8 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
   const float on = length(met.hit.position - start.position);
   const Rgb left = from.inside.transmittance_over(materials, on);
   from.weight *= left;
-  meet(-travel, from.leg + on, distance - from.leg, met);
-  const Rgb emitted = sees_lamps ? weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0) : Rgb(0.0f);
+  meet(-travel, from.leg + on, distance - from.leg, from.key, met);
+  const Rgb emitted = sees_lamps ? weighed_emission(lights_, met.hit, -travel, from.scattering(), 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, to));
 }

@@ -76,7 +76,9 @@ class IncomingRadiance {
   struct Met;
   struct Further;
   struct Gathered;
-  void meet(Vec3 wo, float leg, float before, Met& met) const;
+  void meet(Vec3 wo, float leg, float before, std::uint64_t key, Met& met) const;
+  void look_at(Vec3 wo, Met& met) const;
+  void draw_side(std::uint64_t key, Met& met) const;
   float remaining_share(const Met& met, const PointLookup::Light* point, const Further& from) const;
   template <class Take, class Key, class TakeMedium, class Miss>
   void follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take, const Key& key,
@@ -84,6 +86,8 @@ class IncomingRadiance {
   Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                 const Gathered& to) const;
+  Rgb reflected_on_side(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
+                        const Gathered& to) const;
   Rgb radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
                               const Gathered& to) const;
   Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, int depth,

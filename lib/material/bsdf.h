@@ -55,6 +55,10 @@ namespace tempolux {
 /// that leaves at a more grazing angle than it arrived: the coat would have sent part of this light back to the lobe.
 /// The loss is at most 5 % below a smooth coat of index 1.5.
 ///
+/// KHR_materials_diffuse_transmission adds a Lambert lobe that sends light to the other side. It is a Bsdf of its own,
+/// for which MaterialValues::from_behind is set (diffuse_transmission.h): the stack weighs light by c and reflects
+/// none.
+///
 /// A further lobe of event S is a class with the functions that lobe.h lists, in a file of its own. Its name stands in
 /// Layer, and the constructor adds it. A further lobe of event D adds its rho to that of the Lambert lobe.
 class Bsdf {
@@ -80,7 +84,8 @@ class Bsdf {
   /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
   /// too.
   bool has_lambert() const { return has_lambert_; }
-  bool has_diffuse() const { return diffuse_; }               ///< true if the Lambert lobe reflects any light
+  /// True if the Lambert lobe reflects any light, or if the surface transmits light diffusely from any side.
+  bool has_diffuse() const { return diffuse_; }
   bool has_specular() const { return lobes_ > 0 || glass_; }  ///< true if there is an S lobe
   /// True if all S lobes are mirrors or smooth glass, or there is none.
   bool specular_is_delta() const { return spread_ == 0; }
@@ -160,7 +165,8 @@ class Bsdf {
   /// True if the lobes can be sampled separately: a Lambert lobe under a reflection, or the reflection and the
   /// transmission of smooth glass and nothing else.
   bool forks() const {
-    return glass_ ? glass_->share() == 1 && glass_->is_delta() && glass_->reflects() : has_diffuse() && lobes_ > 0;
+    return glass_ ? glass_->share() == 1 && glass_->is_delta() && glass_->reflects()
+                  : has_diffuse() && lobes_ > 0 && !behind_;
   }
   /// If forks(): sample() draws the Lambert lobe, or the reflection of glass, for u_lobe below this probability, else
   /// the other lobe. wo is above the surface.
@@ -205,6 +211,7 @@ class Bsdf {
   float rest_ = 1;            ///< share of the stack and the Lambert lobe: 1 - transmission (1 - metallic)
   bool has_lambert_ = false, diffuse_ = false;
   bool lit_ = true;        ///< false: the stack reflects all light
+  bool behind_ = false;    ///< MaterialValues::from_behind: the stack weighs light and reflects none
   bool directed_ = false;  ///< true if lobes of the stack have axes of their own
   std::optional<DielectricLobe> glass_;
 };

@@ -27,7 +27,8 @@ Rgb dielectric_f0(const MaterialValues& m) {
 Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate) {
   if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
-  if (material.transmission * (1 - metallic) > 0) {
+  behind_ = material.from_behind;
+  if (!behind_ && material.transmission * (1 - metallic) > 0) {
     glass_.emplace(material, front, plate);
     rest_ = 1 - glass_->share();
     if (!glass_->is_delta()) ++spread_;
@@ -44,8 +45,16 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
       add_reflection(material, fresnel, frame);
     else add_round(fresnel, material.roughness);
   }
-  lambert_.add(material.base_color * (1 - metallic));
-  diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
+  if (material.diffuse_transmission > 0) [[unlikely]] {
+    const float through = material.diffuse_transmission;
+    const float beside_glass = 1 - material.transmission * (1 - metallic);  // rest_, which has no glass from behind
+    lambert_.add(behind_ ? material.diffuse_transmission_color * (through * (1 - metallic) * beside_glass)
+                         : material.base_color * ((1 - metallic) * (1 - through)));
+    diffuse_ = lit_ && has_lambert_;  // light from one side at least
+  } else {
+    lambert_.add(material.base_color * (1 - metallic));
+    diffuse_ = lit_ && max_component(lambert_.rho()) > 0;
+  }
 }
 
 /// Adds a reflection that is the same all round: a Mirror below kMirrorRoughness, else a Gloss.
@@ -89,7 +98,7 @@ void Bsdf::add(const Parameters&... parameters) {
   if (!lit_) return;
   Layer& layer = stack_[lobes_++];
   const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
-  if (!AnyLobe::kDelta) ++spread_;
+  if (!AnyLobe::kDelta && !behind_) ++spread_;
   const float rest = 1 - lobe.mean_albedo();
   if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
   else lit_ = false;

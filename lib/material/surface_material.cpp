@@ -72,6 +72,11 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
   if (textures.normal) point.normal = spot.bend(textures.normal, textures.normal_scale, smooth, point.normal_geometric);
   if (values.clearcoat > 0) read_coat(textures, spot, smooth, point, values);
   if (max_component(values.sheen_color) > 0) read_sheen(textures, spot, values);
+  if (textures.diffuse_transmission)
+    values.diffuse_transmission *= spot.read(textures.diffuse_transmission, TextureTransfer::linear)[3];
+  if (textures.diffuse_transmission_color)
+    values.diffuse_transmission_color *=
+        colour_of(spot.read(textures.diffuse_transmission_color, TextureTransfer::srgb));
   if (values.anisotropy > 0) read_grain(textures, spot, point.normal, values);
   values_ = &values;
 }

@@ -10,6 +10,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
@@ -199,7 +200,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
       options.store_directions || (options.store_caustic && normal_maps_see_caustics(tracer.frame().materials));
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
-    varies_.push_back(material.textures || lets_rays_pass(material));
+    varies_.push_back(material.textures || lets_rays_pass(material) || transmits_diffusely(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
   }
   const SceneFrame& frame = tracer.frame();
@@ -394,22 +395,40 @@ struct PhotonTracer::Meeting : Arrival {
   const SurfacePoint& point;
   float distance;  ///< m: length of the ray
   const Bsdf& bsdf;
-  float coverage;  ///< share of photons that hit the surface there (alpha)
-  Vec3 smooth;     ///< the shading normal without a normal map
+  float coverage;    ///< share of photons that hit the surface there (alpha)
+  Vec3 smooth;       ///< the shading normal without a normal map
+  bool front;        ///< true if the photon came from the surface's front side
+  float chance = 1;  ///< probability with which the side was drawn from which the photon goes on
 };
 
 /// Processes the arrival of a photon at a surface. Returns false if its path ends there.
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
                            PhotonBatch& batch) const {
   const Vec3 travel = path.ray.direction;
+  const bool front = dot(point.normal_geometric, travel) < 0;
   if (varies_[point.material] || point.plate > 0) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, travel);
-    return scatter_at(path, {textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth},
-                      draw, batch);
+    Meeting at{textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth, front};
+    const Rgb flux = arrive(path, at, draw.bounce, batch);
+    if (transmits_diffusely(textured.material)) [[unlikely]]
+      return scatter_to_a_side(path, at, textured.material, flux, draw, batch);
+    return scatter_from(path, at, flux, draw, batch);
   }
-  const bool front = dot(point.normal_geometric, travel) < 0;
-  return scatter_at(path, {{point, travel}, point, distance, bsdfs_[point.material][front], 1, point.normal}, draw,
-                    batch);
+  const Meeting at{{point, travel}, point, distance, bsdfs_[point.material][front], 1, point.normal, front};
+  return scatter_from(path, at, arrive(path, at, draw.bounce, batch), draw, batch);
+}
+
+/// Scatters a photon at a surface that transmits diffusely. The photon goes on from one of both sides, which is drawn.
+/// On the other side it scatters as if it had come from there, against its direction (diffuse_transmission.h).
+bool PhotonTracer::scatter_to_a_side(Path& path, Meeting& at, const MaterialValues& material, Rgb flux,
+                                     const Draw& draw, PhotonBatch& batch) const {
+  const SideChoice side = choose_side(at.bsdf, at.wi_local, material, path.random.get1(draw.bounce, Purpose::side));
+  at.chance = side.probability;
+  if (!side.behind) return scatter_from(path, at, flux, draw, batch);
+  const Arrival arrival(at.point, at.wi);
+  const Bsdf through(from_behind(material), !at.front, arrival.frame, Carries::flux);
+  return scatter_from(path, {arrival, at.point, at.distance, through, at.coverage, at.smooth, !at.front, at.chance},
+                      flux, draw, batch);
 }
 
 /// Aims the share Aim::kTowards of the first events D that happen outside the spheres around what cameras see at the
@@ -497,22 +516,25 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
   return event;
 }
 
-/// Records a photon, then scatters or absorbs it. Returns false if its path ends there.
-bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
-  const SurfacePoint& point = at.point;
-  const bool front = dot(point.normal_geometric, at.wi) > 0;
-  const bool solid = solid_[point.material] && !(point.plate > 0);
+/// Absorbs a part of the photon's flux in the solid that it has crossed, and records the photon. Returns the flux [W]
+/// that arrives.
+Rgb PhotonTracer::arrive(Path& path, const Meeting& at, std::uint32_t bounce, PhotonBatch& batch) const {
   Rgb flux = path.flux;
-  if (path.inside.any() || (solid && !front)) {
-    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, at.distance);
+  if (path.inside.any() || (bounds_solid_at(at.point) && !at.front)) {
+    flux *= path.inside.transmittance_to(tracer_.frame().materials, at.point.material, at.front, at.distance);
     path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
   }
+  store(path, at, flux, bounce, batch);
+  return flux;
+}
 
-  store(path, at, flux, draw.bounce, batch);
+/// Scatters a photon of this flux [W] or absorbs it. Returns false if its path ends there.
+bool PhotonTracer::scatter_from(Path& path, const Meeting& at, Rgb flux, const Draw& draw, PhotonBatch& batch) const {
+  const SurfacePoint& point = at.point;
   const PathRandom& random = path.random;
   const auto [next, travel, aimed] = event_at(path, at, draw);
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
-  const Rgb reflected = flux * next.weight;
+  const Rgb reflected = at.chance == 1 ? flux * next.weight : flux * next.weight / at.chance;
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool first_event = !path.diffuse_seen && !path.specular_seen && !next.straight;
@@ -523,13 +545,13 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
-  if (solid && !next.diffuse) {
+  if (bounds_solid_at(point) && !next.diffuse) {
     const std::span<const Material> materials = tracer_.frame().materials;
-    if (const float larger = path.inside.index_squared_of_start(materials, point.material, front); larger != 1) {
+    if (const float larger = path.inside.index_squared_of_start(materials, point.material, at.front); larger != 1) {
       path.balance->emitted += Rgbd(path.flux * larger) - Rgbd(path.flux);
       path.flux *= larger;
     }
-    path.inside.scatter(point.material, front, next.transmitted);
+    path.inside.scatter(point.material, at.front, next.transmitted);
   }
   path.ray = spawn_ray(point, travel);
   return survives;

@@ -183,7 +183,11 @@ class PhotonTracer {
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   float aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const;
   void store(const Path& path, const Meeting& at, Rgb flux, std::uint32_t bounce, PhotonBatch& batch) const;
-  bool scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const;
+  bool bounds_solid_at(const SurfacePoint& point) const { return solid_[point.material] && !(point.plate > 0); }
+  Rgb arrive(Path& path, const Meeting& at, std::uint32_t bounce, PhotonBatch& batch) const;
+  bool scatter_from(Path& path, const Meeting& at, Rgb flux, const Draw& draw, PhotonBatch& batch) const;
+  bool scatter_to_a_side(Path& path, Meeting& at, const MaterialValues& material, Rgb flux, const Draw& draw,
+                         PhotonBatch& batch) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

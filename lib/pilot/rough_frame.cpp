@@ -1,3 +1,4 @@
+#include "lib/material/diffuse_transmission.h"
 #include "lib/pilot/rough_frame.h"
 
 #include <algorithm>
@@ -319,7 +320,7 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
       seen_through(picture.scene.tracer, picture.view, {float(at.x) + 0.5f, float(at.y) + 0.5f, {}});
   if (!seen) return pair;
   const SurfaceMaterial material(picture.scene.frame(), seen->surface, seen->footprint);
-  const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
+  const Rgb reflected = diffuse_albedo_of_both(material) * kInvPi;
   double difference = 0;
   for (const FinalGather& gather : gathers) {
     const IrradianceRecord record = gather.gather(seen->surface, seen->normal, pair.counts);

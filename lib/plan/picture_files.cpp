@@ -92,7 +92,7 @@ Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, con
   Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_motion(g, frame, channels)};
   add_light(g, frame, c);
   for (const std::string& words : {g.size, pixels, "--channels " + channels}) c.option(words);
-  if (!g.preview()) c.option(kAudit);
+  c.option(kAudit);
   return c;
 }
 

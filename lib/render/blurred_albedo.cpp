@@ -3,7 +3,7 @@
 #include <array>
 
 #include "lib/core/parallel_each.h"
-#include "lib/material/bsdf.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/render/shutter.h"
 
 namespace tempolux {
@@ -18,7 +18,7 @@ Rgb albedo_along(const RenderScene& scene, const CameraView& view, const CameraS
   const RayCone cone = view.cone();
   SurfacePoint point = scene.tracer.surface_point(hit);
   const SurfaceMaterial material(scene.frame(), point, cone.width + cone.spread * hit.t);
-  return Bsdf(material).diffuse_albedo();
+  return diffuse_albedo_of_both(material);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/image/channel_groups.h"
-#include "lib/material/bsdf.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/same_surfaces.h"
 #include "lib/trace/triangle_hit.h"
@@ -116,7 +116,7 @@ Rgb albedo_in_pixel(const SceneFrame& frame, const CameraView& view, Vec2 centre
     SurfacePoint there = point;
     there.u = met.u, there.v = met.v;
     const SurfaceMaterial material(frame, there, (cone.width + cone.spread * met.t) / kAcross);
-    sum += Bsdf(material).diffuse_albedo();
+    sum += diffuse_albedo_of_both(material);
     ++count;
   }
   return count > 0 ? sum * (1 / float(count)) : at_centre;
@@ -157,7 +157,7 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
       planes.set_surface(i, point, rays.rays[k].direction, scene.frame().origin);
       if (planes.z) planes.z[i] = float(view.depth(point.position));
       if (planes.albedo[0]) {
-        const Rgb rho = albedo_in_pixel(scene.frame(), view, centres[k], hit, point, Bsdf(material).diffuse_albedo());
+        const Rgb rho = albedo_in_pixel(scene.frame(), view, centres[k], hit, point, diffuse_albedo_of_both(material));
         set(planes.albedo, i, {rho.r, rho.g, rho.b});
       }
       if (motion) {

@@ -34,12 +34,28 @@ float KnownLight::remaining_share(const SurfacePoint& hit, Vec3 geometric, float
   return light && !PointLookup::is_near(*light, distance, u) ? bright->remaining_share(*light, distance) : 1.0f;
 }
 
+namespace {
+
+/// A surface that transmits diffusely needs light on both sides: the point is seen from one of them. look.random draws
+/// the side; without it the side with more light is taken.
+SeenPoint seen_from_a_side(SpecularChain& chain, const ShadingPoint& shading, float step, const Look& look) {
+  const SideChoice side = choose_side(shading.bsdf, shading.wo_local, chain.material(),
+                                      look.random ? look.random->get1(chain.events(), Purpose::side) : 0.5f);
+  const Vec3 normal =
+      side.behind ? ShadingPoint(chain.point(), chain.ray().direction, chain.material()).normal : shading.normal;
+  return {chain.point(), normal, step, true, chain.passed() / side.probability};
+}
+
+}  // namespace
+
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {
   SpecularChain chain(tracer, view.pinhole({look.x, look.y}));
   while (chain.meet()) {
     // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
     const float step = view.pixel_size(chain.way());
     const ShadingPoint& shading = chain.shade(step);
+    if (transmits_diffusely(chain.material())) [[unlikely]]
+      return seen_from_a_side(chain, shading, step, look);
     if (shading.bsdf.has_diffuse())
       return SeenPoint{chain.point(), shading.normal, step, chain.events() > 0, chain.passed()};
     const std::uint32_t mirrors = chain.events();

@@ -67,6 +67,9 @@ struct Vertex {
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
+  /// True if the path goes on from the other side of a surface that transmits diffusely. Bright points and spots light
+  /// the lobe that reflects; light that this lobe transmits is not divided.
+  bool behind = false;
   /// Length [m] of the leg to this vertex times PathState::divided. If it is above 0, the light of lamps close to this
   /// vertex is divided (BrightPoints).
   float divided_leg = 0;
@@ -130,6 +133,7 @@ class EyeTracer {
     state.distance = 0, state.spread = 1;
   }
   void go_on(const Ray& ray, PathState& state) const;
+  ShadingPoint shade(const SurfacePoint& point, const MaterialValues& material, PathState& state, bool& behind) const;
   bool samples_diffuse(const Vertex& at) const { return !at.known.has(LightKind::direct) && at.x.bsdf.has_diffuse(); }
   bool samples_specular(const Vertex& at, const PathState& state) const {
     return !(state.matte && state.known.has(LightKind::caustic)) && at.x.bsdf.has_specular() &&
@@ -452,7 +456,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   Layers& result = *state.result;
   const StoredAt stored_at(scene_, x);
   const float u = state.random.get1(state.bounce, Purpose::gather);
-  if (state.known.has(LightKind::bright) && !state.specular)
+  if (state.known.has(LightKind::bright) && !state.specular && !at.behind)
     at.remaining_share = known.remaining_share(*stored_at.surface, stored_at.geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share);
@@ -508,6 +512,20 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   }
 }
 
+/// The side of a surface from which the path goes on, with its lobes. If the surface transmits diffusely, one of both
+/// sides is drawn, and `behind` is true for the other side.
+inline ShadingPoint EyeTracer::shade(const SurfacePoint& point, const MaterialValues& material, PathState& state,
+                                     bool& behind) const {
+  const Vec3 wo = -state.ray.direction;
+  if (!transmits_diffusely(material)) [[likely]]
+    return {point, wo, material};
+  const ShadingPoint own(point, wo, material);
+  const SideChoice side = choose_side(own.bsdf, own.wo_local, material, state.random.get1(state.bounce, Purpose::side));
+  state.throughput *= 1 / side.probability;
+  behind = side.behind;
+  return behind ? ShadingPoint(point, -wo, from_behind(material)) : own;
+}
+
 /// Adds the light at state.hit and continues the path from there. Returns false if the path ends.
 bool EyeTracer::step(PathState& state) const {
   const SceneFrame& frame = scene_.frame();
@@ -535,8 +553,10 @@ bool EyeTracer::step(PathState& state) const {
     if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
-  const ShadingPoint x(point, -state.ray.direction, material);
+  bool behind = false;
+  const ShadingPoint x = shade(point, material, state, behind);
   Vertex at{x, material};
+  at.behind = behind;
   // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
   // surface straight and without absorption, so the path forgets the plate's glass.
   if (state.plate != kNone && (x.bsdf.has_diffuse() || !x.bsdf.specular_is_delta())) [[unlikely]]
@@ -547,7 +567,7 @@ bool EyeTracer::step(PathState& state) const {
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
     at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   choose_spots(at, state);
-  if (state.divided > 0 && x.bsdf.has_diffuse())
+  if (state.divided > 0 && x.bsdf.has_diffuse() && !behind)
     at.divided_leg = state.divided * length(point.position - state.last.position);
   add_light(at, state);
   return !(at.known.has(LightKind::direct) && !x.bsdf.has_specular()) && leave(at, state);

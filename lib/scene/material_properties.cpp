@@ -44,7 +44,12 @@ constexpr std::array kProperties{
     MaterialProperty{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyStrength", &M::anisotropy, 0, 1,
                      value, true},
     MaterialProperty{"anisotropy rotation", "/extensions/KHR_materials_anisotropy/anisotropyRotation",
-                     &M::anisotropy_rotation, -kNoUpper, kNoUpper, value, true}};
+                     &M::anisotropy_rotation, -kNoUpper, kNoUpper, value, true},
+    MaterialProperty{"diffuse transmission", "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor",
+                     &M::diffuse_transmission, 0, 1, value, true},
+    MaterialProperty{"diffuse transmission colour",
+                     "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor",
+                     &M::diffuse_transmission_color, 0, 1, value, true}};
 
 using T = MaterialTextures;
 constexpr std::array kTextures{
@@ -62,26 +67,31 @@ constexpr std::array kTextures{
                     &T::clearcoat_normal},
     MaterialTexture{"sheen colour", "/extensions/KHR_materials_sheen/sheenColorTexture", &T::sheen_color},
     MaterialTexture{"sheen roughness", "/extensions/KHR_materials_sheen/sheenRoughnessTexture", &T::sheen_roughness},
-    MaterialTexture{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyTexture", &T::anisotropy}};
+    MaterialTexture{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyTexture", &T::anisotropy},
+    MaterialTexture{"diffuse transmission", "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture",
+                    &T::diffuse_transmission},
+    MaterialTexture{"diffuse transmission colour",
+                    "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
+                    &T::diffuse_transmission_color}};
 
 // A new member changes these counts. It needs a row above, in which reader, hash and animation find it.
 [[maybe_unused]] constexpr auto members = [](const MaterialValues& values) {
   [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
                                 thin_walled, attenuation_color, attenuation_distance, double_sided, unlit, clearcoat,
                                 clearcoat_roughness, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation,
-                                axes] = values;
-  return 20;
+                                diffuse_transmission, diffuse_transmission_color, axes, from_behind] = values;
+  return 23;
 };
-// Besides: alpha cutoff, the second factor of the emission. The axes are of a hit, not of the file.
-static_assert(kProperties.size() == 20 + 2 - 1);
+// Besides: alpha cutoff, the second factor of the emission. axes and from_behind are of a hit, not of the file.
+static_assert(kProperties.size() == 23 + 2 - 2);
 [[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
   [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, specular,
                                 specular_color, clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color,
-                                sheen_roughness, anisotropy, normal_scale, clearcoat_normal_scale, grain,
-                                vertex_colors] = values;
-  return 17;
+                                sheen_roughness, anisotropy, diffuse_transmission, diffuse_transmission_color,
+                                normal_scale, clearcoat_normal_scale, grain, vertex_colors] = values;
+  return 19;
 };
-static_assert(kTextures.size() == 17 - 4);  // the scales, vertex_colors and grain are no textures
+static_assert(kTextures.size() == 19 - 4);  // the scales, vertex_colors and grain are no textures
 
 Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& property) {
   Rgb colour;

@@ -59,7 +59,12 @@ struct MaterialValues {
   float sheen_roughness = 0;      ///< perceptual, [0, 1]
   float anisotropy = 0;           ///< KHR_materials_anisotropy: strength, [0, 1]
   float anisotropy_rotation = 0;  ///< from the surface's tangent, counter-clockwise
-  SurfaceAxes axes;               ///< at a hit; SurfaceMaterial sets them
+  /// KHR_materials_diffuse_transmission: replaces this share of the reflecting Lambert lobe by one that sends light to
+  /// the other side (diffuse_transmission.h), [0, 1].
+  float diffuse_transmission = 0;
+  Rgb diffuse_transmission_color{1.0f};  ///< colour of that lobe, [0, 1]
+  SurfaceAxes axes;                      ///< at a hit; SurfaceMaterial sets them
+  bool from_behind = false;              ///< at a hit: the path sees only the lobe of diffuse_transmission
 
   /// True if the material emits light where its texture is not black.
   bool emissive() const { return max_component(emission) > 0; }
@@ -82,19 +87,21 @@ struct Texture {
 
 /// The textures of a material; each multiplies the property of its name. Vertex colours multiply base colour and alpha.
 struct MaterialTextures {
-  Texture base_color;           ///< sRGB; its A multiplies Material::alpha
-  Texture metallic_roughness;   ///< linear: B metallic, G roughness
-  Texture normal;               ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
-  Texture emission;             ///< sRGB
-  Texture transmission;         ///< linear: R
-  Texture specular;             ///< linear: A
-  Texture specular_color;       ///< sRGB
-  Texture clearcoat;            ///< linear: R
-  Texture clearcoat_roughness;  ///< linear: G
-  Texture clearcoat_normal;     ///< as normal; without it the coat has the smooth normal
-  Texture sheen_color;          ///< sRGB
-  Texture sheen_roughness;      ///< linear: A
-  Texture anisotropy;           ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
+  Texture base_color;                  ///< sRGB; its A multiplies Material::alpha
+  Texture metallic_roughness;          ///< linear: B metallic, G roughness
+  Texture normal;                      ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
+  Texture emission;                    ///< sRGB
+  Texture transmission;                ///< linear: R
+  Texture specular;                    ///< linear: A
+  Texture specular_color;              ///< sRGB
+  Texture clearcoat;                   ///< linear: R
+  Texture clearcoat_roughness;         ///< linear: G
+  Texture clearcoat_normal;            ///< as normal; without it the coat has the smooth normal
+  Texture sheen_color;                 ///< sRGB
+  Texture sheen_roughness;             ///< linear: A
+  Texture anisotropy;                  ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
+  Texture diffuse_transmission;        ///< linear: A
+  Texture diffuse_transmission_color;  ///< sRGB
   float normal_scale = 1, clearcoat_normal_scale = 1;
   bool grain = false;          ///< true if the material has anisotropy, so that primitives need tangents
   bool vertex_colors = false;  ///< true if some primitives of the material have Primitive::colors
@@ -102,7 +109,7 @@ struct MaterialTextures {
   bool any() const {
     return base_color || metallic_roughness || normal || emission || transmission || specular || specular_color ||
            clearcoat || clearcoat_roughness || clearcoat_normal || sheen_color || sheen_roughness || anisotropy ||
-           grain || vertex_colors;
+           diffuse_transmission || diffuse_transmission_color || grain || vertex_colors;
   }
   /// The texture whose coordinates give a primitive its tangents; nullptr: the material needs none.
   const Texture* along_tangents() const {

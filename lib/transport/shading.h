@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "lib/material/bsdf.h"
+#include "lib/material/diffuse_transmission.h"
 #include "lib/material/seen_side.h"
 #include "lib/trace/trace.h"
 

@@ -6,12 +6,14 @@ ones, digests alone are compared, and the command says so. Without valgrind, too
 """
 import hashlib
 import math
+import multiprocessing
 import os
 import re
 import shutil
 import struct
 import subprocess
 import tempfile
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import pipeline
@@ -194,14 +196,17 @@ def run(bench, name):
 
 
 def run_all(bench, names):
-    """What these canaries do with these programs; each runs once."""
+    """What these canaries do with these programs; each runs once, as many at a time as there are processors."""
     known = Steps(bench.out / "steps" / "canaries.json", bench.programs_digest())
     ran = {}
-    for name in names:
-        try:
-            ran[name] = known(name, lambda: run(bench, name))
-        except Missing as reason:
-            print(f"canary {name}: left out: {reason}", flush=True)
+    # Processes, since run() sets variables of the environment.
+    with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("fork")) as workers:
+        running = {name: workers.submit(run, bench, name) for name in names if name not in known.kept["found"]}
+        for name in names:
+            try:
+                ran[name] = known(name, lambda: running[name].result())
+            except Missing as reason:
+                print(f"canary {name}: left out: {reason}", flush=True)
     return ran
 
 

@@ -112,11 +112,11 @@ def means_of(path):
     return result
 
 
-def render(tools, scene, out, seed, spp):
-    """The means by paths and by the chain."""
+def render(tools, scene, out, seed, spp, words=()):
+    """The means by paths and by the chain. words: options of the scene."""
     def run(tool, *words):
         subprocess.run([str(word) for word in (tools / tool, *words, "-q")], check=True)
-    common, picture = [scene, "--seed", seed], ["--size", "64x36", "--channels", "RGBA,layers,id"]
+    common, picture = [scene, "--seed", seed, *words], ["--size", "64x36", "--channels", "RGBA,layers,id"]
     run("frame-render", *common, "--integrator", "path", "--spp", spp, *picture, "-o", out / "paths.exr")
     pipeline.chain(run, common, out / "chain", ["--photons", 400000],
                    pixels=["--keep-outliers", "--spp", 64, *picture], map_beside=True)
@@ -125,6 +125,23 @@ def render(tools, scene, out, seed, spp):
 
 def mean_and_error(values):
     return statistics.fmean(values), statistics.stdev(values) / math.sqrt(len(values))
+
+
+def differences(name, pairs):
+    """Compares the means of pairs of both ways by object and layer. Prints those that differ by more than 1 % of the
+    object's light and 3 standard errors; returns their number, and how many were compared."""
+    beyond = count = 0
+    for thing in pairs[0][0]:
+        light = mean_and_error([sum(p[thing].values()) for p, _ in pairs])[0]
+        for layer in LAYERS:
+            by_paths, error_paths = mean_and_error([p[thing][layer] for p, _ in pairs])
+            by_chain, error_chain = mean_and_error([c[thing][layer] for _, c in pairs])
+            error, count = math.hypot(error_paths, error_chain), count + 1
+            if abs(by_chain - by_paths) > 0.01 * light + 3 * error:
+                beyond += 1
+                print(f"{name} object {thing} {layer}: chain {by_chain:.5f}, paths {by_paths:.5f},",
+                      f"error {error:.5f}, light {light:.5f}", flush=True)
+    return beyond, count
 
 
 def main():
@@ -141,16 +158,8 @@ def main():
         scene = options.out / f"room{number}.gltf"
         room(scene, number, options.only)
         pairs = [render(options.bin, scene, options.out, seed + 1, options.spp) for seed in range(options.runs)]
-        for thing in pairs[0][0]:
-            light = mean_and_error([sum(p[thing].values()) for p, _ in pairs])[0]
-            for layer in LAYERS:
-                by_paths, error_paths = mean_and_error([p[thing][layer] for p, _ in pairs])
-                by_chain, error_chain = mean_and_error([c[thing][layer] for _, c in pairs])
-                error, count = math.hypot(error_paths, error_chain), count + 1
-                if abs(by_chain - by_paths) > 0.01 * light + 3 * error:
-                    beyond += 1
-                    print(f"room {number} object {thing} {layer}: chain {by_chain:.5f}, paths {by_paths:.5f},",
-                          f"error {error:.5f}, light {light:.5f}", flush=True)
+        found, compared = differences(f"room {number}", pairs)
+        beyond, count = beyond + found, count + compared
     print(f"{beyond} of {count} means differ by more than 1 % of the object's light and 3 errors")
     return beyond > 0
 

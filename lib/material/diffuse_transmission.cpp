@@ -1,0 +1,14 @@
+#include "lib/material/diffuse_transmission.h"
+
+namespace tempolux {
+
+SideChoice choose_side(const Bsdf& bsdf, Vec3 direction, const MaterialValues& material, float u) {
+  const Vec3 wo = direction.z > 0 ? direction : Vec3{0, 0, 1};
+  const float own = channel_mean(bsdf.specular_albedo(wo) + bsdf.diffuse_reflectance(wo)) +
+                    material.transmission * (1 - material.metallic),
+              other = channel_mean(Bsdf(from_behind(material)).diffuse_reflectance(wo));
+  const float behind = own + other > 0 ? other / (own + other) : 0;
+  return u < behind ? SideChoice{true, behind} : SideChoice{false, 1 - behind};
+}
+
+}  // namespace tempolux

@@ -1,0 +1,42 @@
+// lib/material/diffuse_transmission.h -- the Lambert lobe that sends light to the other side of a surface
+// (KHR_materials_diffuse_transmission): paper, leaves, cloth.
+//
+// With wi and wo on different sides of the surface and the coupling c of bsdf.h, the lobe is
+//     f(wi, wo) = tau / pi  c(wi) c(wo).
+// c depends only on the angle between a direction and the normal. So f is also the value of a reflecting Lambert lobe
+// of the colour tau for light from wi and a viewer at -wo, both on one side. A path that meets such a surface chooses
+// the side from which it goes on. On its own side it finds the reflecting lobes. On the other side it finds one Lambert
+// lobe with the viewer at -wo, so light samples, records, points and photons of that side serve it as they serve any
+// surface.
+#pragma once
+
+#include "lib/material/bsdf.h"
+
+namespace tempolux {
+
+inline bool transmits_diffusely(const MaterialValues& m) { return m.diffuse_transmission > 0 && m.metallic < 1; }
+
+/// The material as a path sees it that goes on from the other side: only the transmitting lobe scatters light.
+inline MaterialValues from_behind(MaterialValues material) {
+  material.from_behind = true;
+  return material;
+}
+
+/// Reflectances of both Lambert lobes together, without coupling [1].
+inline Rgb diffuse_albedo_of_both(const MaterialValues& material) {
+  const Rgb reflected = Bsdf(material).diffuse_albedo();
+  return transmits_diffusely(material) ? reflected + Bsdf(from_behind(material)).diffuse_albedo() : reflected;
+}
+
+/// The side from which a path goes on at a surface that transmits diffusely.
+struct SideChoice {
+  bool behind = false;    ///< the other side
+  float probability = 1;  ///< of this choice, by which the path's throughput is divided; above 0
+};
+
+/// Chooses a side by u in [0, 1), in proportion to the light that the lobes of each side send towards wo if light is
+/// uniform. bsdf: of the path's own side. wo: unit, in the local frame of `bsdf`; below the surface it counts as the
+/// normal.
+SideChoice choose_side(const Bsdf& bsdf, Vec3 wo, const MaterialValues& material, float u);
+
+}  // namespace tempolux
