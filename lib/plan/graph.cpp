@@ -90,6 +90,12 @@ std::string with_channels(std::string channels, const std::string& more) {
   return channels;
 }
 
+void Command::append(const Command& other, const std::string& begin) {
+  for (const std::string& word : words_of(other.words)) option(word.starts_with("--") ? begin + word.substr(2) : word);
+  inputs.insert(inputs.end(), other.inputs.begin(), other.inputs.end());
+  content += other.content;
+}
+
 int GraphBuilder::clamped(int frame) const { return std::clamp(frame, 0, plan.last_frame); }
 
 Command GraphBuilder::at(int frame) const { return {"--frame " + std::to_string(frame), {}, state(frame).light}; }

@@ -26,6 +26,8 @@ struct Command {
     option(option_name.empty() ? name : option_name + " " + name);
     inputs.push_back(name);
   }
+  /// Adds the options, inputs and content of another command. Its options begin with `begin` in place of "--".
+  void append(const Command& other, const std::string& begin = "--");
   /// Adds a file of state/. The part of its name before '-' is the first frame of the segment. The result does not
   /// depend on this part, so the key does not either.
   void state_file(const std::string& option_name, const std::string& name) {

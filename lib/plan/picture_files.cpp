@@ -57,9 +57,7 @@ std::string sampled_picture(GraphBuilder& g, const StageInfo& stage, int frame, 
   c.option("--still-frame " + std::to_string(from));
   Command light{"", {}, ""};
   add_light(g, from, light);
-  c.content += light.content;
-  for (std::string word : words_of(light.words)) c.option(word.starts_with("--") ? "--still-" + word.substr(2) : word);
-  c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
+  c.append(light, "--still-");
   return g.add(stage, frame, c);
 }
 

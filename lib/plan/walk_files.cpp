@@ -69,20 +69,18 @@ std::string walked_picture(GraphBuilder& g, int frame) {
   const std::string decided_by = interval_file(g, interval);
   if (std::ranges::find(g.graph.intervals, decided_by) == g.graph.intervals.end())
     g.graph.intervals.push_back(decided_by);
-  Command light{"", {}, ""};
-  add_light(g, frame, light);
   Command c{"",
             {},
-            g.tool_hash("ibr-warp") + (g.wish.filter > 0 ? g.tool_hash("st-filter") : "") + light.content +
-                g.cameras({frame}) + in_motion(g, frame, g.wish.channels)};
+            g.tool_hash("ibr-warp") + (g.wish.filter > 0 ? g.tool_hash("st-filter") : "") + g.cameras({frame}) +
+                in_motion(g, frame, g.wish.channels)};
   c.file("", decided_by);
   c.option(frame_digits(frame));
   c.option(g.wish.filter > 0 ? g.wish.channels : "-");
+  add_light(g, frame, c);
   for (const std::string& words :
-       {light.words, g.size, pixels_of(g, frame),
+       {g.size, pixels_of(g, frame),
         "--channels " + (g.wish.filter > 0 ? raw_channels(g.wish, g.wish.channels) : g.wish.channels)})
     c.option(words);
-  c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
   return g.add(stage_in("walked"), frame, c);
 }
 
