@@ -30,7 +30,8 @@ enum class Purpose : std::uint32_t {
   medium,
   phase,
   sun,
-  lens
+  lens,
+  wavelength
 };
 
 /// Finaliser with full avalanche on 64 bits (Stafford's mix 13, as in SplitMix64).

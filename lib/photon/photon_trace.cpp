@@ -122,8 +122,8 @@ struct Arrival {
 
 namespace {
 
-/// A surface whose Bsdf must be made at the hit: its material has textures or alpha, or it bounds a plate of glass. The
-/// constructor applies the normal map to the point.
+/// A surface whose Bsdf must be made at the hit: its material has textures, alpha or dispersion, or it bounds a plate
+/// of glass. The constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
@@ -131,9 +131,9 @@ struct Textured {
   Bsdf bsdf;
   float coverage;  ///< share of photons that hit the surface there (alpha)
 
-  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
+  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel, float wavelength)
       : smooth(point.normal),
-        material(frame, point),
+        material(frame, point, 0, wavelength),
         arrival(point, travel),
         bsdf(material, dot(point.normal_geometric, travel) < 0, arrival.frame, Carries::flux, point.plate),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
@@ -199,7 +199,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
       options.store_directions || (options.store_caustic && normal_maps_see_caustics(tracer.frame().materials));
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
-    varies_.push_back(material.textures || lets_rays_pass(material));
+    varies_.push_back(material.textures || lets_rays_pass(material) || disperses(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
   }
   const SceneFrame& frame = tracer.frame();
@@ -396,6 +396,8 @@ struct PhotonTracer::Meeting : Arrival {
   const Bsdf& bsdf;
   float coverage;  ///< share of photons that hit the surface there (alpha)
   Vec3 smooth;     ///< the shading normal without a normal map
+  /// The wavelength that the photon takes if the surface refracts it; null: it takes none.
+  const HeroWavelength* drawn = nullptr;
 };
 
 /// Processes the arrival of a photon at a surface. Returns false if its path ends there.
@@ -403,9 +405,15 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
                            PhotonBatch& batch) const {
   const Vec3 travel = path.ray.direction;
   if (varies_[point.material] || point.plate > 0) [[unlikely]] {
-    const Textured textured(tracer_.frame(), point, travel);
-    return scatter_at(path, {textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth},
-                      draw, batch);
+    HeroWavelength hero{path.wavelength};
+    const bool draws =
+        disperses(tracer_.frame().materials[point.material]) && !(path.wavelength > 0 || point.plate > 0);
+    if (draws) hero = hero_wavelength(path.random.get1(0, Purpose::wavelength));
+    const Textured textured(tracer_.frame(), point, travel, hero.nm);
+    return scatter_at(
+        path,
+        {textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth, draws ? &hero : nullptr},
+        draw, batch);
   }
   const bool front = dot(point.normal_geometric, travel) < 0;
   return scatter_at(path, {{point, travel}, point, distance, bsdfs_[point.material][front], 1, point.normal}, draw,
@@ -440,7 +448,7 @@ void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uin
     weight = at.correction_by(at.smooth);
   if (!(stores_[std::size_t(kind)] && at.bsdf.has_lambert() && weight > 0)) return;
   Rgb stored = flux * weight;
-  if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
+  if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials, path.wavelength);
   if (at.coverage != 1) stored *= 1 / at.coverage;
   // Field by field: copying a record of 32 bytes that was just assembled would stall.
   formats::Photon& photon = batch.block.photons.emplace_back();
@@ -494,6 +502,8 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
     }
   }
   if (ways > 1) next.weight *= float(ways);
+  if (next.transmitted && at.drawn) [[unlikely]]
+    next.weight *= at.drawn->color;
   return event;
 }
 
@@ -521,6 +531,8 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   // `survival` leaves out the factor `aimed`: it depends on the surface alone, so aimed photons have less flux.
   path.flux = reflected * (survives ? aimed / survival : 0);
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
+  if (next.transmitted && at.drawn) [[unlikely]]
+    path.wavelength = at.drawn->nm;
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
   if (solid && !next.diffuse) {

@@ -32,6 +32,7 @@ struct PathState {
   Inside inside;             ///< the glass in which `ray` runs
   LastScatter last;          ///< the last vertex and its pdf, for MIS
   std::uint32_t bounce = 0;  ///< number of events
+  float wavelength = 0;      ///< HeroWavelength::nm; 0: the path is white
   bool forked = false;       ///< true if the path has forked, so that both lobes of a surface were followed
   bool matte = false;        ///< true after an event D; the fields below concern the last event D
   /// Light at the place of that event that was added already. With `bright`, light of bright points was sampled there,
@@ -64,6 +65,9 @@ struct PathState {
 struct Vertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
+  /// The wavelength that the path takes if the surface refracts it; null: the surface has no dispersion, or the path
+  /// has its wavelength already.
+  const HeroWavelength* drawn = nullptr;
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
@@ -199,6 +203,8 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
     go_on(spawn_ray(x.surface, state.ray.direction), state);
     return true;
   }
+  if (next.transmitted && at.drawn) [[unlikely]]
+    state.throughput *= at.drawn->color, state.wavelength = at.drawn->nm;
   state.path.scatter(next.diffuse);
   if (next.diffuse) {
     state.throughput *= at.remaining_share;
@@ -296,6 +302,8 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   const Vec3 wi = from.w;
   Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
   Rgb glossy = has_specular ? x.eval_specular(from) : Rgb(0.0f);
+  if (behind && at.drawn) [[unlikely]]
+    glossy *= at.drawn->color;
   if (!light.only_sampled) {
     const float pdf = light.pdf_solid_angle * share;
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
@@ -530,13 +538,17 @@ bool EyeTracer::step(PathState& state) const {
   if (only_specular && state.known.has(LightKind::caustic) && !scene_.tracer.may_pass(state.hit)) return false;
 
   const Vec3 smooth = point.normal;
-  const SurfaceMaterial material(frame, point, state.cone.width);
+  HeroWavelength hero{state.wavelength};
+  const bool draws = disperses(frame.materials[point.material]) && !(state.wavelength > 0 || point.plate > 0);
+  if (draws) [[unlikely]]
+    hero = hero_wavelength(state.random.get1(0, Purpose::wavelength));
+  const SurfaceMaterial material(frame, point, state.cone.width, hero.nm);
   if (material.values().unlit) [[unlikely]] {
     if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
   const ShadingPoint x(point, -state.ray.direction, material);
-  Vertex at{x, material};
+  Vertex at{x, material, draws ? &hero : nullptr};
   // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
   // surface straight and without absorption, so the path forgets the plate's glass.
   if (state.plate != kNone && (x.bsdf.has_diffuse() || !x.bsdf.specular_is_delta())) [[unlikely]]
