@@ -30,6 +30,7 @@ struct Schlick {
   float f90 = 0;
   Rgb at(float cos_h) const;
   Rgb mean() const;  ///< cosine-weighted mean over the hemisphere: (20 F0 + F90) / 21
+  float mean_of_largest() const { return max_component(mean()); }  ///< the same of the largest channel
   /// Share of uniform light [1] that microfacets of this width reflect towards w. e: their albedo for F0 and F90.
   template <class Width>
   Rgb albedo(const Width&, Vec3, AlbedoPair e) const {
@@ -50,7 +51,7 @@ class BasicMirror {
   static constexpr bool kDelta = true;
 
   explicit BasicMirror(const Fresnel& fresnel) : fresnel_(fresnel) {}
-  float mean_albedo() const { return max_component(fresnel_.mean()); }
+  float mean_albedo() const { return fresnel_.mean_of_largest(); }
   LobeAlbedo albedo(Vec3 w) const { return {.single = fresnel_.at(w.z)}; }
   Rgb eval(LobeDirection, LobeDirection) const { return Rgb(0.0f); }
   float pdf_solid_angle(Vec3, LobeDirection) const { return 0; }

@@ -50,23 +50,27 @@ ThinFilm::ThinFilm(const Schlick& plain, float factor, float index, float thickn
 Rgb ThinFilm::at(float cos_h) const {
   const float cos = std::clamp(cos_h, 0.0f, 1.0f);
   const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - cos * cos) / squared(index_)));
-  const float outer = schlick(outer_f0_, cos), through = 1 - outer;
+  const float outer = schlick(outer_f0_, cos);
   const Rgb first = sensitivity(path_ * cos_t), second = sensitivity(2 * path_ * cos_t);
   Rgb f = plain_.at(cos_h) * plain_share_;
   for (int c = 0; c < 3; ++c) {
-    const float inner = schlick(inner_f0_[c], cos_t);
-    const float both = std::clamp(outer * inner, 1e-5f, 0.9999f), root = std::sqrt(both);
-    const float all = through * through * inner / (1 - both), swing = 2 * (all - through);
-    const float film = outer + all + swing * (root * sign_[c] * first[c] + both * second[c]);
+    const float film = film_reflectance(outer, schlick(inner_f0_[c], cos_t), sign_[c] * first[c], second[c]);
     f[c] += film_share_ * std::clamp(film, 0.0f, 1.0f);
   }
   return f;
 }
 
 Rgb ThinFilm::mean() const {
-  Rgb sum(0.0f);
-  for (int i = 0; i < kAngles; ++i) sum += at(cos_of(i));
-  return sum / kAngles;
+  Rgb difference(0.0f);  // from Schlick, whose mean is known
+  for (int i = 0; i < kAngles; ++i) difference += at(cos_of(i)) - ends_.at(cos_of(i));
+  return ends_.mean() + difference / kAngles;
+}
+
+float ThinFilm::mean_of_largest() const {
+  const Schlick grey{Rgb(max_component(ends_.f0)), ends_.f90};
+  float difference = 0;
+  for (int i = 0; i < kAngles; ++i) difference += max_component(at(cos_of(i))) - grey.at(cos_of(i)).r;
+  return grey.mean().r + difference / kAngles;
 }
 
 }  // namespace tempolux
