@@ -34,7 +34,7 @@ struct Spectrum {
   std::vector<double> wavelength, color;
 
   Spectrum() {
-    constexpr double kFirst = 390, kLast = 700, kStep = 0.05;  // nm
+    constexpr double kFirst = 390, kLast = 675, kStep = 0.05;  // nm; beyond, the fit has green where there is none
     constexpr int kCount = int((kLast - kFirst) / kStep + 0.5);
     const auto at = [&](int i) { return kFirst + (i + 0.5) * kStep; };
     std::array<double, 3> total{};
