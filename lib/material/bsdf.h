@@ -47,6 +47,7 @@ namespace tempolux {
 /// the Mirror by that of a thin film (thin_film.h).
 ///
 /// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included.
+/// Smooth glass keeps the thin film.
 /// Paths carry L / n^2 in place of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the
 /// same value as one outside. sample() also serves photons, which carry watts; photon_trace.h divides their density
 /// inside a solid by n^2.

@@ -39,7 +39,8 @@ class ThinFilm {
 
   /// Share of uniform light [1] that microfacets reflect towards w; width, e: of the lobe. It is Schlick's share for
   /// the same F0 and F90, which the table gives, plus the mean over kNormals visible normals of the difference. The
-  /// largest channel is within .02 of the integral for indices up to 2.5, and within .0025 for 95 % of random films.
+  /// largest channel is within .02 of the integral for indices up to 2.5, and within .01 for those of soap, oil and
+  /// oxides.
   template <class Width>
   Rgb albedo(const Width& width, Vec3 w, AlbedoPair e) const {
     return albedo(width, w, e, kNormals, 0);

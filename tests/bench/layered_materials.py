@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Random layered materials on balls in a room: is the light of the chain that of the path tracer?
 
-    python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen] [--films] [--glass]
+    python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen] [--films]
+                                             [--glass]
 
 A room holds eight balls. Each has a base of random colour, metal or not, and by chance a clearcoat, a sheen and an
-anisotropy of random strength and roughness, and a normal map of the base or of the coat. With --films half of the balls
-have a thin film, with --glass each second ball is glass with dispersion. The means of
-the runs of both ways are compared for each object and layer; a difference above 1 % of the object's light plus 3
-standard errors is reported, and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
+anisotropy of random strength and roughness, and a normal map of the base or of the coat. With --films half of the
+balls have a thin film, with --glass each second ball is glass with dispersion. The means of the runs of both ways are
+compared for each object and layer; a difference above 1 % of the object's light plus 3 standard errors is reported,
+and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
 
 A standard error from few runs is itself uncertain. With 2 runs and 16 samples of the path tracer (--spp) 2 of 65 means
 lay beyond the limit (indirect light 5 to 7 % high); with 3 runs and 256 samples 0 of 130; one frame of 512 samples
@@ -39,7 +40,8 @@ def bump(x, y, size=32, waves=2, slope=0.3):
 
 def glass(scene, rng):
     index = scene.glass(rng.choice([0, rng.uniform(0.1, 0.5)]), rng.uniform(1.4, 1.8))
-    scene.document["materials"][index]["extensions"]["KHR_materials_dispersion"] = {"dispersion": 20 / rng.uniform(20, 60)}
+    extensions = scene.document["materials"][index]["extensions"]
+    extensions["KHR_materials_dispersion"] = {"dispersion": 20 / rng.uniform(20, 60)}
     scene.extensions.add("KHR_materials_dispersion")
     return index
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Balls with thin films for a look: writes a scene.
 
-    python3 tests/bench/film_balls.py SCENE.gltf
+    python3 tests/bench/thin_film_balls.py SCENE.gltf
 
 Columns are the film's thickness, 100 to 1000 nm. Rows from above: a film of index 1.33 on black plastic, of index 1.8
 on black plastic, of index 1.33 on steel, the same on rough steel, and a texture of the thickness, 100 nm below to
