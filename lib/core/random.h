@@ -31,7 +31,8 @@ enum class Purpose : std::uint32_t {
   phase,
   sun,
   lens,
-  side
+  side,
+  wavelength
 };
 
 /// Finaliser with full avalanche on 64 bits (Stafford's mix 13, as in SplitMix64).

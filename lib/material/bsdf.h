@@ -10,6 +10,7 @@
 #include "lib/material/dielectric_lobe.h"
 #include "lib/material/opaque_lobes.h"
 #include "lib/material/sheen.h"
+#include "lib/material/thin_film.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -42,9 +43,11 @@ namespace tempolux {
 /// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
 /// above these, with F0 = 0.04 clearcoat and F90 = clearcoat. A coat with a normal of its own is a Coat (coat.h).
 /// Between the two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider
-/// along one direction (anisotropic_ggx.h).
+/// along one direction (anisotropic_ggx.h). KHR_materials_iridescence replaces Schlick's Fresnel term of the Gloss or
+/// the Mirror by that of a thin film (thin_film.h).
 ///
 /// Glass (dielectric_lobe.h) replaces the share transmission (1 - metallic) of all this, clearcoat and sheen included.
+/// Smooth glass keeps the thin film.
 /// Paths carry L / n^2 in place of radiance L inside a solid of index n, so a Lambert lobe inside a solid returns the
 /// same value as one outside. sample() also serves photons, which carry watts; photon_trace.h divides their density
 /// inside a solid by n^2.
@@ -177,16 +180,21 @@ class Bsdf {
  private:
   struct Layer {
     Layer() {}  ///< sets no byte of the lobe: the compiler would clear all of them for every hit
-    std::variant<std::monostate, Mirror, Gloss, AnisotropicGloss, Sheen, Coat<Mirror>, Coat<Gloss>> lobe;
+    std::variant<std::monostate, Mirror, Gloss, AnisotropicGloss, Sheen, Coat<Mirror>, Coat<Gloss>,
+                 BasicMirror<ThinFilm>, BasicGloss<RoundGgx, ThinFilm>, BasicGloss<AnisotropicGgx, ThinFilm>>
+        lobe;
   };
 
   Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate);
   template <class AnyLobe, class... Parameters>
   void add(const Parameters&... parameters);
   Bsdf turned(const Frame& from, const Frame& to) const;
-  void add_round(const Schlick& fresnel, float roughness);
+  template <class Fresnel>
+  void add_round(const Fresnel& fresnel, float roughness);
   void add_coat(const MaterialValues& material, const Frame* frame, Carries carries);
   void add_reflection(const MaterialValues& material, const Schlick& fresnel, const Frame* frame);
+  template <class Fresnel>
+  void add_directed(const MaterialValues& material, const Fresnel& fresnel, const Frame* frame);
   template <class Function>
   auto visit(int i, Function&& function) const;
   void look_up(Direction& d) const;

@@ -41,7 +41,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
   // specular = metallic = 0: matte, and F0 is 0 as well
   if (const float f90 = material.specular * (1 - metallic) + metallic; f90 > 0) {
     const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
-    if (material.anisotropy > 0) [[unlikely]]
+    if (material.anisotropy + material.iridescence > 0) [[unlikely]]
       add_reflection(material, fresnel, frame);
     else add_round(fresnel, material.roughness);
   }
@@ -58,9 +58,10 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
 }
 
 /// Adds a reflection that is the same all round: a Mirror below kMirrorRoughness, else a Gloss.
-inline void Bsdf::add_round(const Schlick& fresnel, float roughness) {
-  if (roughness < kMirrorRoughness) add<Mirror>(fresnel);
-  else add<Gloss>(fresnel, RoundGgx(roughness * roughness), rest_);
+template <class Fresnel>
+inline void Bsdf::add_round(const Fresnel& fresnel, float roughness) {
+  if (roughness < kMirrorRoughness) add<BasicMirror<Fresnel>>(fresnel);
+  else add<BasicGloss<RoundGgx, Fresnel>>(fresnel, RoundGgx(roughness * roughness), rest_);
 }
 
 /// Adds the clearcoat, the uppermost lobe, of index 1.5, and the sheen. Not inlined: the registers would slow materials
@@ -79,14 +80,25 @@ inline void Bsdf::add_round(const Schlick& fresnel, float roughness) {
   if (max_component(material.sheen_color) > 0) add<Sheen>(material.sheen_color, material.sheen_roughness, rest_);
 }
 
-/// Adds the reflection of a material with anisotropy. Without a direction of the grain it is round.
+/// Adds the reflection of a material with anisotropy or a thin film.
 [[gnu::noinline]] void Bsdf::add_reflection(const MaterialValues& material, const Schlick& fresnel,
                                             const Frame* frame) {
+  if (const float factor = material.iridescence; factor > 0)
+    add_directed(material, ThinFilm(fresnel, factor, material.iridescence_ior, material.iridescence_thickness_maximum),
+                 frame);
+  else add_directed(material, fresnel, frame);
+}
+
+/// Adds a reflection along the grain. Without anisotropy or a direction of the grain it is round.
+template <class Fresnel>
+void Bsdf::add_directed(const MaterialValues& material, const Fresnel& fresnel, const Frame* frame) {
   const float alpha_b = material.roughness * material.roughness;
   const float alpha_t = alpha_b + (1 - alpha_b) * material.anisotropy * material.anisotropy;
-  if (frame && length2(material.axes.grain) > 0 && alpha_t >= kMirrorRoughness * kMirrorRoughness) {
+  if (frame && material.anisotropy > 0 && length2(material.axes.grain) > 0 &&
+      alpha_t >= kMirrorRoughness * kMirrorRoughness) {
     directed_ = true;
-    add<AnisotropicGloss>(fresnel, AnisotropicGgx(alpha_t, alpha_b, frame->to_local(material.axes.grain)), rest_);
+    add<BasicGloss<AnisotropicGgx, Fresnel>>(
+        fresnel, AnisotropicGgx(alpha_t, alpha_b, frame->to_local(material.axes.grain)), rest_);
   } else {
     add_round(fresnel, material.roughness);
   }

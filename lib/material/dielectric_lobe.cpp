@@ -20,16 +20,32 @@ DielectricLobe::DielectricLobe(const MaterialValues& material, bool front, float
   }
   pane_ = thin && !rough_;
   if (plate > 0 && !rough_) plate_ = Plate{front, transmittance(material, plate)};
+  if (material.iridescence > 0 && !rough_) [[unlikely]] {
+    const float r = (ior - 1) / (ior + 1);
+    film_.emplace(Schlick{Rgb(r * r), 1}, material.iridescence, material.iridescence_ior,
+                  material.iridescence_thickness_maximum);
+  }
 }
 
-/// The shares that a plate reflects towards cos_o > 0 and lets pass towards it.
-DielectricLobe::Shares DielectricLobe::plate_shares(float cos_o) const {
-  if (!plate_->outer) return {Rgb(0.0f), tint_};
-  float cos_t;
+/// The Fresnel term of a face for cos_o > 0. cos_t: as fresnel_dielectric() sets it.
+Rgb DielectricLobe::face(float cos_o, float& cos_t) const {
   const float f = fresnel_dielectric(cos_o, eta_reflected_, cos_t);
-  Shares shares{Rgb(f), Rgb(0.0f)};
-  if (!(f < 1)) return shares;
+  if (!film_ || !(f < 1)) return Rgb(f);
+  return film_->at(eta_reflected_ > 1 ? cos_t : cos_o);  // the cosine outside
+}
+
+/// The shares that a plate, or a boundary with a film, reflects towards cos_o > 0 and lets pass towards it.
+DielectricLobe::Shares DielectricLobe::shares(float cos_o, float& cos_t) const {
+  if (plate_ && !plate_->outer) return {Rgb(0.0f), tint_};
+  const Rgb face_term = face(cos_o, cos_t);
+  Shares shares{face_term, Rgb(0.0f)};
+  if (!(cos_t > 0)) return shares;
   for (int k = 0; k < 3; ++k) {
+    const float f = face_term[k];
+    if (!plate_) {
+      shares.passed[k] = tint_[k] * (1 - f);
+      continue;
+    }
     const float a = std::pow(plate_->across[k], 1 / std::abs(cos_t));
     const float once = (1 - f) * (1 - f) * a / (1 - f * f * a * a);
     shares.passed[k] = tint_[k] * once;
@@ -39,13 +55,14 @@ DielectricLobe::Shares DielectricLobe::plate_shares(float cos_o) const {
 }
 
 float DielectricLobe::reflectance(float cos_o) const {
-  if (plate_) return plate_shares(cos_o).chance();
   float cos_t;
+  if (plate_ || film_) return shares(cos_o, cos_t).chance();
   return fresnel_dielectric(cos_o, eta_reflected_, cos_t);
 }
 
 Rgb DielectricLobe::passed_straight(float cos_o) const {
-  if (plate_) return plate_shares(cos_o).passed * share_;
+  float cos_t;
+  if (plate_ || (film_ && pane_)) return shares(cos_o, cos_t).passed * share_;
   return pane_ ? tint_ * (share_ * (1 - reflectance(cos_o))) : Rgb(0.0f);
 }
 
@@ -61,8 +78,8 @@ void DielectricLobe::sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const 
     s.transmitted = s.wi.z < 0;
     return;
   }
-  if (plate_) {
-    sample_plate(wo, u_lobe, s);
+  if (plate_ || film_) {
+    sample_by_channel(wo, u_lobe, s);
     return;
   }
   float cos_t = 0;
@@ -81,14 +98,18 @@ void DielectricLobe::sample(Vec3 wo, float u_lobe, Vec2 u, LobeSample& s) const 
   }
 }
 
-void DielectricLobe::sample_plate(Vec3 wo, float u_lobe, LobeSample& s) const {
-  const Shares shares = plate_shares(wo.z);
-  const float reflected = shares.chance();
+/// Draws reflection or transmission where the channels have different shares.
+void DielectricLobe::sample_by_channel(Vec3 wo, float u_lobe, LobeSample& s) const {
+  float cos_t = 0;
+  const Shares by_channel = shares(wo.z, cos_t);
+  const float reflected = by_channel.chance();
   s.delta = true;
-  s.transmitted = s.straight = !(u_lobe < reflected);
-  s.wi = s.transmitted ? -wo : Vec3{-wo.x, -wo.y, wo.z};
+  s.transmitted = !(u_lobe < reflected);
+  s.straight = s.transmitted && (plate_ || pane_);
+  const bool turned = s.transmitted && !s.straight && eta_ != 1;
+  s.wi = !s.transmitted ? Vec3{-wo.x, -wo.y, wo.z} : turned ? refract(wo, eta_, cos_t) : -wo;
   const float p = s.transmitted ? 1 - reflected : reflected;
-  s.weight = (s.transmitted ? shares.passed : shares.reflected) * (1 / p);
+  s.weight = (s.transmitted ? by_channel.passed : by_channel.reflected) * (1 / p);
   s.pdf_solid_angle = share_ * p;
 }
 

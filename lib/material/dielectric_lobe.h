@@ -5,6 +5,7 @@
 
 #include "lib/material/lobe.h"
 #include "lib/material/rough_glass.h"
+#include "lib/material/thin_film.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -19,6 +20,9 @@ namespace tempolux {
 /// where F is the Fresnel term at a face, the same at both, and A the transmittance of the way from face to face,
 /// thickness / cos_t. These are the sums over all reflections between the faces [Born & Wolf, without interference].
 /// The inner side transmits all light, tinted, and reflects none.
+///
+/// A thin film on smooth glass (thin_film.h) replaces F, by channel, on both sides of a boundary: light that leaves a
+/// solid is reflected as light that enters along the same way. Rough glass shows no film.
 class DielectricLobe {
  public:
   /// front: wo is outside of a solid. plate [m]: thickness of the plate, 0 for other glass.
@@ -27,8 +31,8 @@ class DielectricLobe {
   float share() const { return share_; }
   bool is_delta() const { return !rough_; }
   float light_share_behind() const { return light_share_behind_; }  ///< Bsdf::light_share_behind()
-  /// The share [1] of light that a smooth boundary reflects towards cos_o > 0; of a plate, the probability with which
-  /// sample() reflects.
+  /// The share [1] of light that a smooth boundary reflects towards cos_o > 0; of a plate and below a film, the
+  /// probability with which sample() reflects.
   float reflectance(float cos_o) const;
   /// True if a smooth boundary reflects and transmits. The inner side of a plate only transmits.
   bool reflects() const { return !plate_ || plate_->outer; }
@@ -56,8 +60,9 @@ class DielectricLobe {
       return r > 0 ? r / (r + max_component(passed)) : 0;
     }
   };
-  Shares plate_shares(float cos_o) const;
-  void sample_plate(Vec3 wo, float u_lobe, LobeSample& s) const;
+  Rgb face(float cos_o, float& cos_t) const;
+  Shares shares(float cos_o, float& cos_t) const;
+  void sample_by_channel(Vec3 wo, float u_lobe, LobeSample& s) const;
 
   float share_;
   Rgb tint_;
@@ -66,6 +71,7 @@ class DielectricLobe {
   float light_share_behind_ = 0;
   bool pane_;  ///< the wall is thin and smooth
   std::optional<Plate> plate_;
+  std::optional<ThinFilm> film_;
   std::optional<RoughGlass> rough_;  ///< empty: the boundary is smooth
 };
 

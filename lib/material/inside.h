@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "lib/material/dispersion.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -51,10 +52,13 @@ class Inside {
     return count_ > 0 ? transmittance(materials[within_[count_ - 1]], distance) : Rgb(1.0f);
   }
   /// Product of n^2 over the solids that the path is inside. Camera paths carry L / n^2 and photons carry watts, so
-  /// irradiance from photons must be divided by this factor.
-  float index_squared(std::span<const Material> materials) const {
+  /// irradiance from photons must be divided by this factor. wavelength_nm: HeroWavelength::nm of the path.
+  float index_squared(std::span<const Material> materials, float wavelength_nm = 0) const {
     float product = 1;
-    for (int i = 0; i < count_; ++i) product *= materials[within_[i]].ior * materials[within_[i]].ior;
+    for (int i = 0; i < count_; ++i) {
+      const float index = index_at(materials[within_[i]], wavelength_nm);
+      product *= index * index;
+    }
     return product > 0 ? product : 1;
   }
   /// n^2 of the solid `met` if the path started inside `met` and reaches its boundary for the first time, else 1.

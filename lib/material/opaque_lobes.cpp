@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lib/material/thin_film.h"
+
 namespace tempolux {
 namespace {
 
@@ -30,19 +32,21 @@ Rgb Schlick::at(float cos_h) const {
 
 Rgb Schlick::mean() const { return (f0 * 20 + Rgb(f90)) / 21; }
 
-void Mirror::sample(LobeDirection wo, float, Vec2, LobeSample& s) const {
+template <class Fresnel>
+void BasicMirror<Fresnel>::sample(LobeDirection wo, float, Vec2, LobeSample& s) const {
   if (!(max_component(wo.albedo.single) > 0)) return;
   s.delta = true;
   s.wi = {-wo.w.x, -wo.w.y, wo.w.z};
   s.pdf_solid_angle = 1;
 }
 
-Rgb Mirror::weight(LobeDirection wi, LobeDirection wo, float chance, float) const {
+template <class Fresnel>
+Rgb BasicMirror<Fresnel>::weight(LobeDirection wi, LobeDirection wo, float chance, float) const {
   return wo.albedo.single * passed_both(wi, wo) / chance;
 }
 
-template <class Width>
-BasicGloss<Width>::BasicGloss(const Schlick& fresnel, const Width& width, float share)
+template <class Width, class Fresnel>
+BasicGloss<Width, Fresnel>::BasicGloss(const Fresnel& fresnel, const Width& width, float share)
     : fresnel_(fresnel), share_(share), width_(width) {
   const AlbedoPair m = width_.mean_albedo();
   const float e = m.a + m.b;
@@ -51,39 +55,38 @@ BasicGloss<Width>::BasicGloss(const Schlick& fresnel, const Width& width, float 
     const Rgb mean = fresnel_.mean();
     for (int c = 0; c < 3; ++c) multiple_[c] = fade * mean[c] * mean[c] * e / (1 - mean[c] * mean_lost_) / mean_lost_;
   }
-  mean_albedo_ =
-      max_component(fresnel_.f0) * m.a + fresnel_.f90 * m.b + max_component(multiple_) * mean_lost_ * mean_lost_;
+  mean_albedo_ = fresnel_.mean_albedo(width_, m) + max_component(multiple_) * mean_lost_ * mean_lost_;
 }
 
-template <class Width>
-LobeAlbedo BasicGloss<Width>::albedo(Vec3 w) const {
+template <class Width, class Fresnel>
+LobeAlbedo BasicGloss<Width, Fresnel>::albedo(Vec3 w) const {
   const AlbedoPair e = width_.albedo(w);
   const float lost = std::max(0.0f, 1 - (e.a + e.b));
-  return {fresnel_.f0 * e.a + Rgb(fresnel_.f90 * e.b), multiple_ * (mean_lost_ * lost), lost};
+  return {fresnel_.albedo(width_, w, e), multiple_ * (mean_lost_ * lost), lost};
 }
 
 /// f [1/sr] without share and coupling.
-template <class Width>
-Rgb BasicGloss<Width>::f(LobeDirection wi, LobeDirection wo) const {
+template <class Width, class Fresnel>
+Rgb BasicGloss<Width, Fresnel>::f(LobeDirection wi, LobeDirection wo) const {
   const Vec3 h = normalize(wi.w + wo.w);
   const float d = width_.reflection(wi.w, wo.w, h);
   return fresnel_.at(dot(wo.w, h)) * d + multiple_ * (kInvPi * wi.albedo.lost * wo.albedo.lost);
 }
 
-template <class Width>
-Rgb BasicGloss<Width>::eval(LobeDirection wi, LobeDirection wo) const {
+template <class Width, class Fresnel>
+Rgb BasicGloss<Width, Fresnel>::eval(LobeDirection wi, LobeDirection wo) const {
   return f(wi, wo) * (passed_both(wi, wo) * share_);
 }
 
 /// Visible normals for single reflection, the cosine for multiple reflection.
-template <class Width>
-float BasicGloss<Width>::pdf_solid_angle(Vec3 wi, LobeDirection wo) const {
+template <class Width, class Fresnel>
+float BasicGloss<Width, Fresnel>::pdf_solid_angle(Vec3 wi, LobeDirection wo) const {
   const float share = multiple_share(wo.albedo);
   return (1 - share) * width_.pdf_reflected(normalize(wi + wo.w), wo.w) + share * pdf_hemisphere_cos(wi.z);
 }
 
-template <class Width>
-void BasicGloss<Width>::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const {
+template <class Width, class Fresnel>
+void BasicGloss<Width, Fresnel>::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const {
   if (!(max_component(wo.albedo.single) > 0)) return;
   if (u_lobe < multiple_share(wo.albedo)) {
     s.wi = sample_hemisphere_cos(u);
@@ -94,12 +97,16 @@ void BasicGloss<Width>::sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSampl
   if (s.wi.z > 0) s.pdf_solid_angle = pdf_solid_angle(s.wi, wo);  // else reflected into the surface: absorbed
 }
 
-template <class Width>
-Rgb BasicGloss<Width>::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {
+template <class Width, class Fresnel>
+Rgb BasicGloss<Width, Fresnel>::weight(LobeDirection wi, LobeDirection wo, float, float pdf) const {
   return f(wi, wo) * (passed_both(wi, wo) * (wi.w.z / pdf));
 }
 
+template class BasicMirror<Schlick>;
 template class BasicGloss<RoundGgx>;
 template class BasicGloss<AnisotropicGgx>;
+template class BasicMirror<ThinFilm>;
+template class BasicGloss<RoundGgx, ThinFilm>;
+template class BasicGloss<AnisotropicGgx, ThinFilm>;
 
 }  // namespace tempolux

@@ -30,15 +30,28 @@ struct Schlick {
   float f90 = 0;
   Rgb at(float cos_h) const;
   Rgb mean() const;  ///< cosine-weighted mean over the hemisphere: (20 F0 + F90) / 21
+  float mean_of_largest() const { return max_component(mean()); }  ///< the same of the largest channel
+  /// Share of uniform light [1] that microfacets of this width reflect towards w. e: their albedo for F0 and F90.
+  template <class Width>
+  Rgb albedo(const Width&, Vec3, AlbedoPair e) const {
+    return f0 * e.a + Rgb(f90 * e.b);
+  }
+  /// Cosine-weighted mean of the albedo's largest channel [1]; e: mean of the microfacets' albedo.
+  template <class Width>
+  float mean_albedo(const Width&, AlbedoPair e) const {
+    return max_component(f0) * e.a + f90 * e.b;
+  }
 };
 
 /// Reflects F(cos) of the light from one direction into one other.
-class Mirror {
+/// Fresnel is Schlick or has its functions (ThinFilm).
+template <class Fresnel>
+class BasicMirror {
  public:
   static constexpr bool kDelta = true;
 
-  explicit Mirror(const Schlick& fresnel) : fresnel_(fresnel) {}
-  float mean_albedo() const { return max_component(fresnel_.mean()); }
+  explicit BasicMirror(const Fresnel& fresnel) : fresnel_(fresnel) {}
+  float mean_albedo() const { return fresnel_.mean_of_largest(); }
   LobeAlbedo albedo(Vec3 w) const { return {.single = fresnel_.at(w.z)}; }
   Rgb eval(LobeDirection, LobeDirection) const { return Rgb(0.0f); }
   float pdf_solid_angle(Vec3, LobeDirection) const { return 0; }
@@ -46,8 +59,9 @@ class Mirror {
   Rgb weight(LobeDirection wi, LobeDirection wo, float chance, float pdf) const;
 
  private:
-  Schlick fresnel_;
+  Fresnel fresnel_;
 };
+using Mirror = BasicMirror<Schlick>;
 
 /// GGX of equal width all round (ggx.h).
 class RoundGgx {
@@ -77,13 +91,13 @@ class RoundGgx {
 /// albedo A(w) is F0 a + F90 b + F_ms (1 - E) with a + b = E; a and b come from a table. f_ms is faded in between the
 /// roughnesses 0.23 and 0.34, where GGX loses 1 and 3 % on average. Below them grazing light loses up to 11 %.
 ///
-/// Width says how wide GGX is: RoundGgx or AnisotropicGgx (anisotropic_ggx.h).
-template <class Width>
+/// Width says how wide GGX is: RoundGgx or AnisotropicGgx (anisotropic_ggx.h). Fresnel is Schlick or has its functions.
+template <class Width, class Fresnel = Schlick>
 class BasicGloss {
  public:
   static constexpr bool kDelta = false;
 
-  BasicGloss(const Schlick& fresnel, const Width& width, float share);
+  BasicGloss(const Fresnel& fresnel, const Width& width, float share);
   float mean_albedo() const { return mean_albedo_; }
   LobeAlbedo albedo(Vec3 w) const;
   Rgb eval(LobeDirection wi, LobeDirection wo) const;
@@ -97,7 +111,7 @@ class BasicGloss {
  private:
   Rgb f(LobeDirection wi, LobeDirection wo) const;
 
-  Schlick fresnel_;
+  Fresnel fresnel_;
   float share_;
   Width width_;
   Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in

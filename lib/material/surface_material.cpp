@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lib/material/bsdf.h"
+#include "lib/material/dispersion.h"
 #include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
@@ -21,6 +22,16 @@ void read_coat(const MaterialTextures& textures, const TextureSpot& spot, Vec3 s
   if (textures.clearcoat_normal)
     normal = spot.bend(textures.clearcoat_normal, textures.clearcoat_normal_scale, smooth, point.normal_geometric);
   if (normal != point.normal) values.axes.coat_normal = normal;
+}
+
+/// The share and the thickness of the film.
+void read_film(const MaterialTextures& textures, const TextureSpot& spot, MaterialValues& values) {
+  if (textures.iridescence) values.iridescence *= spot.read(textures.iridescence, TextureTransfer::linear)[0];
+  if (textures.iridescence_thickness) {
+    const float thin = values.iridescence_thickness_minimum;
+    float& thickness = values.iridescence_thickness_maximum;
+    thickness = thin + (thickness - thin) * spot.read(textures.iridescence_thickness, TextureTransfer::linear)[1];
+  }
 }
 
 void read_sheen(const MaterialTextures& textures, const TextureSpot& spot, MaterialValues& values) {
@@ -71,6 +82,7 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
   const Vec3 smooth = point.normal;
   if (textures.normal) point.normal = spot.bend(textures.normal, textures.normal_scale, smooth, point.normal_geometric);
   if (values.clearcoat > 0) read_coat(textures, spot, smooth, point, values);
+  if (values.iridescence > 0) read_film(textures, spot, values);
   if (max_component(values.sheen_color) > 0) read_sheen(textures, spot, values);
   if (textures.diffuse_transmission)
     values.diffuse_transmission *= spot.read(textures.diffuse_transmission, TextureTransfer::linear)[3];
@@ -78,6 +90,14 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
     values.diffuse_transmission_color *=
         colour_of(spot.read(textures.diffuse_transmission_color, TextureTransfer::srgb));
   if (values.anisotropy > 0) read_grain(textures, spot, point.normal, values);
+  values_ = &values;
+}
+
+void SurfaceMaterial::disperse(float wavelength_nm) {
+  const float index = index_at(*values_, wavelength_nm);
+  if (index == values_->ior) return;
+  MaterialValues& values = textured_ ? *textured_ : textured_.emplace(*values_);
+  values.ior = index;
   values_ = &values;
 }
 

@@ -24,11 +24,14 @@ struct RayCone {
 class SurfaceMaterial {
  public:
   /// `point` is a hit of `frame`; if the material has a normal map, point.normal becomes the map's normal. `width` [m]
-  /// is that of a RayCone; 0 reads the finest level.
-  SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width = 0)
+  /// is that of a RayCone; 0 reads the finest level. wavelength_nm: HeroWavelength::nm of the path; glass with
+  /// dispersion gets its index at this wavelength.
+  SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width = 0, float wavelength_nm = 0)
       : values_(&frame.materials[point.material]) {
     if (frame.materials[point.material].textures) [[unlikely]]
       read_textures(frame, point, width);
+    if (wavelength_nm > 0) [[unlikely]]
+      disperse(wavelength_nm);
   }
   SurfaceMaterial(const SurfaceMaterial&) = delete;
   SurfaceMaterial& operator=(const SurfaceMaterial&) = delete;
@@ -38,6 +41,7 @@ class SurfaceMaterial {
 
  private:
   void read_textures(const SceneFrame& frame, SurfacePoint& point, float width);
+  void disperse(float wavelength_nm);
 
   const MaterialValues* values_;
   std::optional<MaterialValues> textured_;

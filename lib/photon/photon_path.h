@@ -19,6 +19,7 @@ struct PhotonTracer::Path {
   PathRandom random{0, 0};
   Ray ray;
   Rgb flux;
+  float wavelength = 0;                   ///< HeroWavelength::nm; 0: the photon is white
   FluxBalance* balance = nullptr;         ///< the balance of the batch, or of this path
   formats::PhotonPilot* pilot = nullptr;  ///< records what the path meets if it is a pilot; else null
   bool diffuse_seen = false, specular_seen = false;

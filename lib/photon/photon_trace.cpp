@@ -123,7 +123,8 @@ struct Arrival {
 
 namespace {
 
-/// A surface whose Bsdf must be made at the hit: its material has textures or alpha, or it bounds a plate of glass. The
+/// A surface whose Bsdf must be made at the hit: its material has textures, alpha or dispersion, transmits
+/// diffusely, or bounds a plate of glass. The
 /// constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
@@ -132,9 +133,9 @@ struct Textured {
   Bsdf bsdf;
   float coverage;  ///< share of photons that hit the surface there (alpha)
 
-  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
+  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel, float wavelength)
       : smooth(point.normal),
-        material(frame, point),
+        material(frame, point, 0, wavelength),
         arrival(point, travel),
         bsdf(material, dot(point.normal_geometric, travel) < 0, arrival.frame, Carries::flux, point.plate),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
@@ -200,7 +201,8 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
       options.store_directions || (options.store_caustic && normal_maps_see_caustics(tracer.frame().materials));
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
-    varies_.push_back(material.textures || lets_rays_pass(material) || transmits_diffusely(material));
+    varies_.push_back(material.textures || lets_rays_pass(material) || transmits_diffusely(material) ||
+                      disperses(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
   }
   const SceneFrame& frame = tracer.frame();
@@ -314,7 +316,8 @@ std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uin
     path.flux = e.flux * share;
     if (!slot_inside_.empty()) [[unlikely]] {
       path.inside = slot_inside_[e.slot];
-      path.flux *= path.inside.index_squared(tracer_.frame().materials);  // as index_squared_of_start does
+      path.flux *=
+          path.inside.index_squared(tracer_.frame().materials, path.wavelength);  // as index_squared_of_start does
     }
     path.ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
     if (e.chord > 0 && !media_) [[unlikely]]
@@ -399,6 +402,8 @@ struct PhotonTracer::Meeting : Arrival {
   Vec3 smooth;       ///< the shading normal without a normal map
   bool front;        ///< true if the photon came from the surface's front side
   float chance = 1;  ///< probability with which the side was drawn from which the photon goes on
+  /// The wavelength that the photon takes if the surface refracts it; null: it takes none.
+  const HeroWavelength* drawn = nullptr;
 };
 
 /// Processes the arrival of a photon at a surface. Returns false if its path ends there.
@@ -407,8 +412,13 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   const Vec3 travel = path.ray.direction;
   const bool front = dot(point.normal_geometric, travel) < 0;
   if (varies_[point.material] || point.plate > 0) [[unlikely]] {
-    const Textured textured(tracer_.frame(), point, travel);
+    HeroWavelength hero{path.wavelength};
+    const bool draws =
+        disperses(tracer_.frame().materials[point.material]) && !(path.wavelength > 0 || point.plate > 0);
+    if (draws) hero = hero_wavelength(path.random.get1(0, Purpose::wavelength));
+    const Textured textured(tracer_.frame(), point, travel, hero.nm);
     Meeting at{textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth, front};
+    if (draws) at.drawn = &hero;
     const Rgb flux = arrive(path, at, draw.bounce, batch);
     if (transmits_diffusely(textured.material)) [[unlikely]]
       return scatter_to_a_side(path, at, textured.material, flux, draw, batch);
@@ -513,6 +523,8 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
     }
   }
   if (ways > 1) next.weight *= float(ways);
+  if (next.transmitted && at.drawn) [[unlikely]]
+    next.weight *= at.drawn->color;
   return event;
 }
 
@@ -543,6 +555,8 @@ bool PhotonTracer::scatter_from(Path& path, const Meeting& at, Rgb flux, const D
   // `survival` leaves out the factor `aimed`: it depends on the surface alone, so aimed photons have less flux.
   path.flux = reflected * (survives ? aimed / survival : 0);
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
+  if (next.transmitted && at.drawn) [[unlikely]]
+    path.wavelength = at.drawn->nm;
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
   if (bounds_solid_at(point) && !next.diffuse) {

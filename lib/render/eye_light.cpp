@@ -124,6 +124,8 @@ inline void EyeTracer::sample_light(const EyeVertex& at, const EyeState& state, 
   const Vec3 wi = from.w;
   Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
   Rgb glossy = has_specular ? x.eval_specular(from) : Rgb(0.0f);
+  if (behind && at.drawn) [[unlikely]]
+    glossy *= at.drawn->color;
   if (!light.only_sampled) {
     const float pdf = light.pdf_solid_angle * share;
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));

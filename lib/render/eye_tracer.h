@@ -2,6 +2,7 @@
 // there. path_tracer.cpp follows the path, eye_light.cpp adds the light of a surface.
 #pragma once
 
+#include "lib/material/dispersion.h"
 #include "lib/material/inside.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
@@ -25,6 +26,7 @@ struct EyeState {
   Inside inside;             ///< the glass in which `ray` runs
   LastScatter last;          ///< the last vertex and its pdf, for MIS
   std::uint32_t bounce = 0;  ///< number of events
+  float wavelength = 0;      ///< HeroWavelength::nm; 0: the path is white
   bool forked = false;       ///< true if the path has forked, so that both lobes of a surface were followed
   bool matte = false;        ///< true after an event D; the fields below concern the last event D
   /// Light at the place of that event that was added already. With `bright`, light of bright points was sampled there,
@@ -57,6 +59,9 @@ struct EyeState {
 struct EyeVertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
+  /// The wavelength that the path takes if the surface refracts it; null: the surface has no dispersion, or the path
+  /// has its wavelength already.
+  const HeroWavelength* drawn = nullptr;
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed

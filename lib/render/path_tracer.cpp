@@ -46,6 +46,8 @@ bool EyeTracer::scatter(const EyeVertex& at, float u_lobe, float times, EyeState
     go_on(spawn_ray(x.surface, state.ray.direction), state);
     return true;
   }
+  if (next.transmitted && at.drawn) [[unlikely]]
+    state.throughput *= at.drawn->color, state.wavelength = at.drawn->nm;
   state.path.scatter(next.diffuse);
   if (next.diffuse) {
     state.throughput *= at.remaining_share;
@@ -207,14 +209,18 @@ inline bool EyeTracer::step(EyeState& state) const {
   if (only_specular && state.known.has(LightKind::caustic) && !scene_.tracer.may_pass(state.hit)) return false;
 
   const Vec3 smooth = point.normal;
-  const SurfaceMaterial material(frame, point, state.cone.width);
+  HeroWavelength hero{state.wavelength};
+  const bool draws = disperses(frame.materials[point.material]) && !(state.wavelength > 0 || point.plate > 0);
+  if (draws) [[unlikely]]
+    hero = hero_wavelength(state.random.get1(0, Purpose::wavelength));
+  const SurfaceMaterial material(frame, point, state.cone.width, hero.nm);
   if (material.values().unlit) [[unlikely]] {
     if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
   bool behind = false;
   const ShadingPoint x = shade(point, material, state, behind);
-  EyeVertex at{x, material};
+  EyeVertex at{x, material, draws ? &hero : nullptr};
   at.behind = behind;
   // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
   // surface straight and without absorption, so the path forgets the plate's glass.

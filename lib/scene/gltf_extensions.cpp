@@ -37,8 +37,6 @@ struct Dispensable {
 constexpr const char* kRest = "the rest of its materials is rendered";
 constexpr const char* kNothing = "it changes no picture";
 constexpr std::array kDispensable{Dispensable{"KHR_materials_variants", "the default variant is rendered"},
-                                  Dispensable{"KHR_materials_dispersion", kRest},
-                                  Dispensable{"KHR_materials_iridescence", kRest},
                                   Dispensable{"KHR_materials_volume_scatter", kRest},
                                   Dispensable{"KHR_interactivity", kNothing},
                                   Dispensable{"KHR_node_hoverability", kNothing},

@@ -79,8 +79,11 @@ std::vector<double> numbers_of(Import& import, const tinygltf::Material& source,
     if (property.role == PropertyRole::presence) return {1};
     if (!extension->second.Has(at.key)) return {};
     const ExtensionReader reader{import, extension->second, object};
-    return property.components() == 1 ? std::vector{reader.number(at.key.c_str(), 0)}
-                                      : reader.numbers(at.key.c_str(), property.components());
+    if (property.components() > 1) return reader.numbers(at.key.c_str(), property.components());
+    const tinygltf::Value& value = extension->second.Get(at.key);
+    if (value.IsNumber()) return {reader.number(at.key.c_str(), 0)};
+    import.mend(object + "." + at.key, "what is not a number is left out", 1);
+    return {};
   }
   const tinygltf::ParameterMap& values = at.parent.empty() ? source.additionalValues : source.values;
   const auto found = values.find(at.key);

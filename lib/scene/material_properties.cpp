@@ -31,12 +31,24 @@ constexpr std::array kProperties{
                      0, 1},
     MaterialProperty{"attenuation distance", "/extensions/KHR_materials_volume/attenuationDistance",
                      &M::attenuation_distance, kLeastDistance},
+    MaterialProperty{"dispersion", "/extensions/KHR_materials_dispersion/dispersion", &M::dispersion, 0, kNoUpper,
+                     value, true},
     MaterialProperty{"double sided", "/doubleSided", &M::double_sided},
     MaterialProperty{"unlit", "/extensions/KHR_materials_unlit", &M::unlit, 0, kNoUpper, presence},
     MaterialProperty{"clearcoat", "/extensions/KHR_materials_clearcoat/clearcoatFactor", &M::clearcoat, 0, 1, value,
                      true},
     MaterialProperty{"clearcoat roughness", "/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
                      &M::clearcoat_roughness, 0, 1, value, true},
+    MaterialProperty{"iridescence", "/extensions/KHR_materials_iridescence/iridescenceFactor", &M::iridescence, 0, 1,
+                     value, true},
+    MaterialProperty{"iridescence ior", "/extensions/KHR_materials_iridescence/iridescenceIor", &M::iridescence_ior, 1,
+                     kNoUpper, value, true},
+    MaterialProperty{"iridescence thickness minimum",
+                     "/extensions/KHR_materials_iridescence/iridescenceThicknessMinimum",
+                     &M::iridescence_thickness_minimum, 0, kNoUpper, value, true},
+    MaterialProperty{"iridescence thickness maximum",
+                     "/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
+                     &M::iridescence_thickness_maximum, 0, kNoUpper, value, true},
     MaterialProperty{"sheen colour", "/extensions/KHR_materials_sheen/sheenColorFactor", &M::sheen_color, 0, 1, value,
                      true},
     MaterialProperty{"sheen roughness", "/extensions/KHR_materials_sheen/sheenRoughnessFactor", &M::sheen_roughness, 0,
@@ -65,6 +77,9 @@ constexpr std::array kTextures{
                     &T::clearcoat_roughness},
     MaterialTexture{"clearcoat normal", "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
                     &T::clearcoat_normal},
+    MaterialTexture{"iridescence", "/extensions/KHR_materials_iridescence/iridescenceTexture", &T::iridescence},
+    MaterialTexture{"iridescence thickness", "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture",
+                    &T::iridescence_thickness},
     MaterialTexture{"sheen colour", "/extensions/KHR_materials_sheen/sheenColorTexture", &T::sheen_color},
     MaterialTexture{"sheen roughness", "/extensions/KHR_materials_sheen/sheenRoughnessTexture", &T::sheen_roughness},
     MaterialTexture{"anisotropy", "/extensions/KHR_materials_anisotropy/anisotropyTexture", &T::anisotropy},
@@ -77,21 +92,24 @@ constexpr std::array kTextures{
 // A new member changes these counts. It needs a row above, in which reader, hash and animation find it.
 [[maybe_unused]] constexpr auto members = [](const MaterialValues& values) {
   [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
-                                thin_walled, attenuation_color, attenuation_distance, double_sided, unlit, clearcoat,
-                                clearcoat_roughness, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation,
-                                diffuse_transmission, diffuse_transmission_color, axes, from_behind] = values;
-  return 23;
+                                thin_walled, attenuation_color, attenuation_distance, dispersion, double_sided, unlit,
+                                clearcoat, clearcoat_roughness, iridescence, iridescence_ior,
+                                iridescence_thickness_minimum, iridescence_thickness_maximum, sheen_color,
+                                sheen_roughness, anisotropy, anisotropy_rotation, diffuse_transmission,
+                                diffuse_transmission_color, axes, from_behind] = values;
+  return 28;
 };
 // Besides: alpha cutoff, the second factor of the emission. axes and from_behind are of a hit, not of the file.
-static_assert(kProperties.size() == 23 + 2 - 2);
+static_assert(kProperties.size() == 28 + 2 - 2);
 [[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
   [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, specular,
                                 specular_color, clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color,
                                 sheen_roughness, anisotropy, diffuse_transmission, diffuse_transmission_color,
-                                normal_scale, clearcoat_normal_scale, grain, vertex_colors] = values;
-  return 19;
+                                iridescence, iridescence_thickness, normal_scale, clearcoat_normal_scale, grain,
+                                vertex_colors] = values;
+  return 21;
 };
-static_assert(kTextures.size() == 19 - 4);  // the scales, vertex_colors and grain are no textures
+static_assert(kTextures.size() == 21 - 4);  // the scales, vertex_colors and grain are no textures
 
 Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& property) {
   Rgb colour;

@@ -51,10 +51,15 @@ struct MaterialValues {
   /// KHR_materials_volume: transmittance of a path of length attenuation_distance [m, > 0] inside a solid.
   Rgb attenuation_color{1.0f};
   float attenuation_distance = std::numeric_limits<float>::infinity();
+  float dispersion = 0;  ///< KHR_materials_dispersion: 20 / Abbe number of a solid, >= 0 (lib/material/dispersion.h)
   bool double_sided = false;
   bool unlit = false;             ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
   float clearcoat = 0;            ///< KHR_materials_clearcoat: factor of the coat's Fresnel term, [0, 1]
   float clearcoat_roughness = 0;  ///< perceptual, [0, 1]
+  float iridescence = 0;          ///< KHR_materials_iridescence: share of the reflection that has a thin film, [0, 1]
+  float iridescence_ior = 1.3f;   ///< index of the film, >= 1
+  /// Thickness of the film [nm, >= 0] where its texture is 0, and where the texture is 1 or missing.
+  float iridescence_thickness_minimum = 100, iridescence_thickness_maximum = 400;
   Rgb sheen_color{0.0f};          ///< KHR_materials_sheen, [0, 1]
   float sheen_roughness = 0;      ///< perceptual, [0, 1]
   float anisotropy = 0;           ///< KHR_materials_anisotropy: strength, [0, 1]
@@ -102,14 +107,17 @@ struct MaterialTextures {
   Texture anisotropy;                  ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
   Texture diffuse_transmission;        ///< linear: A
   Texture diffuse_transmission_color;  ///< sRGB
+  /// Linear: R the film\'s share; G its thickness, from the minimum to the maximum.
+  Texture iridescence, iridescence_thickness;
   float normal_scale = 1, clearcoat_normal_scale = 1;
   bool grain = false;          ///< true if the material has anisotropy, so that primitives need tangents
   bool vertex_colors = false;  ///< true if some primitives of the material have Primitive::colors
 
   bool any() const {
     return base_color || metallic_roughness || normal || emission || transmission || specular || specular_color ||
-           clearcoat || clearcoat_roughness || clearcoat_normal || sheen_color || sheen_roughness || anisotropy ||
-           diffuse_transmission || diffuse_transmission_color || grain || vertex_colors;
+           clearcoat || clearcoat_roughness || clearcoat_normal || iridescence || iridescence_thickness ||
+           sheen_color || sheen_roughness || anisotropy || diffuse_transmission || diffuse_transmission_color ||
+           grain || vertex_colors;
   }
   /// The texture whose coordinates give a primitive its tangents; nullptr: the material needs none.
   const Texture* along_tangents() const {

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Random layered materials on balls in a room: is the light of the chain that of the path tracer?
 
-    python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen]
+    python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen] [--films]
+                                             [--glass]
 
 A room holds eight balls. Each has a base of random colour, metal or not, and by chance a clearcoat, a sheen and an
-anisotropy of random strength and roughness, and a normal map of the base or of the coat. The means of
-the runs of both ways are compared for each object and layer; a difference above 1 % of the object's light plus 3
-standard errors is reported, and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
+anisotropy of random strength and roughness, and a normal map of the base or of the coat. With --films half of the
+balls have a thin film, with --glass each second ball is glass with dispersion. The means of the runs of both ways are
+compared for each object and layer; a difference above 1 % of the object's light plus 3 standard errors is reported,
+and the exit status is 1. Objects 0 to 6 are the room and its lamp, 7 to 14 the balls.
 
 A standard error from few runs is itself uncertain. With 2 runs and 16 samples of the path tracer (--spp) 2 of 65 means
 lay beyond the limit (indirect light 5 to 7 % high); with 3 runs and 256 samples 0 of 130; one frame of 512 samples
@@ -36,7 +38,15 @@ def bump(x, y, size=32, waves=2, slope=0.3):
     return [round(127.5 + 127.5 * v / math.hypot(*n)) for v in n]
 
 
-def layered(scene, rng, only):
+def glass(scene, rng):
+    index = scene.glass(rng.choice([0, rng.uniform(0.1, 0.5)]), rng.uniform(1.4, 1.8))
+    extensions = scene.document["materials"][index]["extensions"]
+    extensions["KHR_materials_dispersion"] = {"dispersion": 20 / rng.uniform(20, 60)}
+    scene.extensions.add("KHR_materials_dispersion")
+    return index
+
+
+def layered(scene, rng, only, films=None):
     """A random material; the ranges are those of a product's surfaces, smooth coats included."""
     coat, sheen, brushed = (f"KHR_materials_{name}" for name in ("clearcoat", "sheen", "anisotropy"))
     extensions = {}
@@ -51,6 +61,10 @@ def layered(scene, rng, only):
     if map_of == "coat" and coat in extensions:
         extensions[coat]["clearcoatNormalTexture"] = {"index": 0}
     extensions = {k: v for k, v in extensions.items() if only in k}
+    if films and films.random() < 0.5:
+        extensions["KHR_materials_iridescence"] = {
+            "iridescenceFactor": films.choice([1, films.random()]), "iridescenceIor": films.uniform(1.2, 2),
+            "iridescenceThicknessMaximum": films.uniform(100, 1000)}
     material = {"pbrMetallicRoughness": {"baseColorFactor": [*(rng.uniform(0.1, 0.9) for _ in range(3)), 1],
                                          "metallicFactor": rng.choice([0, 0, 1]),
                                          "roughnessFactor": rng.uniform(0.3, 1)}, "extensions": extensions}
@@ -79,8 +93,9 @@ def ball(scene, name, centre, radius, material, rings=24, sectors=48):
     scene.mesh(positions, triangles, material, normals, uvs, name=name)
 
 
-def room(path, seed, only):
-    rng, scene = random.Random(seed), Scene()
+def room(path, seed, options):
+    rng, scene, others = random.Random(seed), Scene(), random.Random(f"films and glass {seed}")
+    films = others if options.films else None
     scene._append("images", {"uri": "data:image/png;base64," + base64.b64encode(png(32, bump)).decode()})
     scene._append("textures", {"source": 0})
     grey, red, blue = (scene.material(c, one_sided=True) for c in (0.6, (0.7, 0.3, 0.2), (0.2, 0.4, 0.7)))
@@ -95,7 +110,8 @@ def room(path, seed, only):
     scene.quad((-0.5, y, -0.4), (0.5, y, -0.4), (0.5, y, 0.4), (-0.5, y, 0.4), lamp, name="lamp")
     for i in range(8):
         centre = (-1.35 + 0.9 * (i % 4), 0.4 + 0.8 * (i // 4), -0.7)
-        ball(scene, f"ball {i}", centre, 0.36, layered(scene, rng, only))
+        material = layered(scene, rng, options.only, films)
+        ball(scene, f"ball {i}", centre, 0.36, glass(scene, others) if options.glass and i % 2 else material)
     scene.camera((0, 1, 1.4), (0, 1, 0), fov=0.95)
     scene.save(path)
 
@@ -151,12 +167,14 @@ def main():
     for name, default in (("rooms", 5), ("runs", 4), ("spp", 256)):
         parser.add_argument(f"--{name}", type=int, default=default)
     parser.add_argument("--only", default="", help="clearcoat, sheen or anisotropy: leaves out the others; none: all")
+    for name in ("films", "glass"):
+        parser.add_argument(f"--{name}", action="store_true")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     beyond = count = 0
     for number in range(options.rooms):
         scene = options.out / f"room{number}.gltf"
-        room(scene, number, options.only)
+        room(scene, number, options)
         pairs = [render(options.bin, scene, options.out, seed + 1, options.spp) for seed in range(options.runs)]
         found, compared = differences(f"room {number}", pairs)
         beyond, count = beyond + found, count + compared

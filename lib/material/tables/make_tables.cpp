@@ -1,9 +1,10 @@
-// make_material_tables FILE -- writes the C++ source of the tables of albedo.h, glass_albedo.h, anisotropic_ggx.h and
-// sheen.h. The build runs it.
+// make_material_tables FILE -- writes the C++ source of the tables of albedo.h, glass_albedo.h, anisotropic_ggx.h,
+// sheen.h and dispersion.h. The build runs it.
 #include <cstdio>
 #include <span>
 
 #include "lib/material/tables/nodes.h"
+#include "lib/material/tables/spectrum_integrals.h"
 
 namespace tempolux {
 namespace {
@@ -107,6 +108,15 @@ void write_sheen(std::FILE* out) {
   std::fputs("}  // namespace tempolux::sheen_table\n", out);
 }
 
+void write_spectrum(std::FILE* out) {
+  using namespace spectrum_table;
+  const integrals::Spectrum spectrum;
+  std::fputs("namespace tempolux::spectrum_table {\n", out);
+  define(out, "kWavelength[kSteps + 1]", {kSteps + 1}, spectrum.wavelength);
+  define(out, "kColor[kSteps + 1][3]", {kSteps + 1, 3}, spectrum.color);
+  std::fputs("}  // namespace tempolux::spectrum_table\n", out);
+}
+
 }  // namespace
 }  // namespace tempolux
 
@@ -115,11 +125,13 @@ int main(int argc, char** argv) {
   if (!out) return 2;
   std::fputs(
       "#include \"lib/material/albedo.h\"\n#include \"lib/material/glass_albedo.h\"\n"
-      "#include \"lib/material/anisotropic_ggx.h\"\n#include \"lib/material/sheen.h\"\n\n",
+      "#include \"lib/material/anisotropic_ggx.h\"\n#include \"lib/material/sheen.h\"\n"
+      "#include \"lib/material/dispersion.h\"\n\n",
       out);
   tempolux::write_albedo(out);
   tempolux::write_glass(out);
   tempolux::write_anisotropic(out);
   tempolux::write_sheen(out);
+  tempolux::write_spectrum(out);
   return std::fclose(out) ? 1 : 0;
 }

@@ -200,11 +200,11 @@ TEST(GltfGate, ExtrasOfNodesAreKept) {
 
 TEST(GltfGate, UsedExtensionsThatNothingReadsGiveOneWarning) {
   GltfMaker maker = one_triangle();
-  maker.json["extensionsUsed"] = {"KHR_materials_iridescence", "VENDOR_thing"};
+  maker.json["extensionsUsed"] = {"KHR_materials_volume_scatter", "VENDOR_thing"};
   maker.json["nodes"][0]["extensions"]["UNDECLARED_one"] = {{"a", 1}};
   const Scene scene = maker.load();
   ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_CONTAINS(scene.warnings[0], "KHR_materials_iridescence, UNDECLARED_one, VENDOR_thing");
+  EXPECT_CONTAINS(scene.warnings[0], "KHR_materials_volume_scatter, UNDECLARED_one, VENDOR_thing");
 }
 
 TEST(GltfGate, OtherVersionsAreRefused) {

@@ -432,6 +432,39 @@ TEST(GltfLoad, LayersAreReadWithTheirTextures) {
   EXPECT_EQ(m.textures->clearcoat_normal_scale, 0.5f);
 }
 
+TEST(GltfLoad, FilmsAndDispersionAreRead) {
+  GltfMaker maker;
+  const char* pixel =
+      "data:image/"
+      "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+  maker.json["images"] = {{{"uri", pixel}}};
+  maker.json["textures"] = {{{"source", 0}}};
+  maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {
+      "KHR_materials_iridescence", "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_dispersion"};
+  maker.add_material({{"extensions",
+                       {{"KHR_materials_iridescence",
+                         {{"iridescenceFactor", 0.5},
+                          {"iridescenceIor", 1.75},
+                          {"iridescenceThicknessMinimum", 200},
+                          {"iridescenceThicknessMaximum", 600},
+                          {"iridescenceTexture", {{"index", 0}}},
+                          {"iridescenceThicknessTexture", {{"index", 0}}}}},
+                        {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                        {"KHR_materials_volume", {{"thicknessFactor", 1}}},
+                        {"KHR_materials_dispersion", {{"dispersion", 0.25}}}}}});
+  maker.add_node({{"mesh", maker.add_square(0)}});
+  const Scene scene = maker.load();
+  EXPECT_TRUE(scene.warnings.empty());
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.iridescence, 0.5f);
+  EXPECT_EQ(m.iridescence_ior, 1.75f);
+  EXPECT_EQ(m.iridescence_thickness_minimum, 200);
+  EXPECT_EQ(m.iridescence_thickness_maximum, 600);
+  EXPECT_EQ(m.dispersion, 0.25f);
+  ASSERT_TRUE(m.textures.has_value());
+  EXPECT_TRUE(m.textures->iridescence && m.textures->iridescence_thickness);
+}
+
 TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
   GltfMaker maker;
   maker.add_material({{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});

@@ -37,19 +37,21 @@ bool flip_one(int n, Members&... members) {
 // A new member of these structures does not compile here: it must count in a hash, too.
 bool flip_member(MaterialValues& m, int n) {
   auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission, thin_walled,
-         attenuation_color, attenuation_distance, double_sided, unlit, clearcoat, clearcoat_roughness, sheen_color,
+         attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat, clearcoat_roughness,
+         iridescence, iridescence_ior, iridescence_thickness_minimum, iridescence_thickness_maximum, sheen_color,
          sheen_roughness, anisotropy, anisotropy_rotation, axes] = m;
   return flip_one(n, base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
-                  thin_walled, attenuation_color, attenuation_distance, double_sided, unlit, clearcoat,
-                  clearcoat_roughness, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation);
+                  thin_walled, attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat,
+                  clearcoat_roughness, iridescence, iridescence_ior, iridescence_thickness_minimum,
+                  iridescence_thickness_maximum, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation);
 }
 bool flip_member(MaterialTextures& t, int n) {
   auto& [base_color, metallic_roughness, normal, emission, transmission, specular, specular_color, clearcoat,
-         clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy, normal_scale,
-         clearcoat_normal_scale, grain, vertex_colors] = t;
+         clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy, iridescence,
+         iridescence_thickness, normal_scale, clearcoat_normal_scale, grain, vertex_colors] = t;
   return flip_one(n, base_color, metallic_roughness, normal, emission, transmission, specular, specular_color,
                   clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy,
-                  normal_scale, clearcoat_normal_scale);
+                  iridescence, iridescence_thickness, normal_scale, clearcoat_normal_scale);
 }
 bool flip_member(PunctualLight& l, int n) {
   auto& [name, kind, intensity, inner, outer, size] = l;
