@@ -12,9 +12,13 @@ float schlick(float f0, float cos) {
   return f0 + (1 - f0) * (k2 * k2 * k);
 }
 
-/// The cosine of the phase 2 pi path / wavelength as linear Rec. 709 sees it [1]; path [m]. Fit of Belcour & Barla
-/// 2017: each curve of CIE 1931 is a Gaussian in the wave number (X: two of them), whose transform is a damped cosine.
-Rgb sensitivity(float path) {
+struct Sensitivity {
+  Rgb first, second;
+};
+
+/// S(path) and S(2 path) of ThinFilm without the turn of the phase [1]; path [m]. Fit of Belcour & Barla 2017: each
+/// curve of CIE 1931 is a Gaussian in the wave number (X: two of them), whose transform is a damped cosine.
+Sensitivity sensitivity(float path) {
   struct Curve {
     float height, middle, variance;
   };
@@ -23,12 +27,17 @@ Rgb sensitivity(float path) {
   constexpr float kScale = 1 / 1.0685e-7f;
   const float phase = 2 * kPi * path;
   const auto seen = [&](const Curve& c) {
-    return kScale * c.height * std::sqrt(2 * kPi * c.variance) * std::cos(c.middle * phase) *
-           std::exp(-c.variance * phase * phase);
+    const float scale = kScale * c.height * std::sqrt(2 * kPi * c.variance);
+    const float cos = std::cos(c.middle * phase), damped = std::exp(-c.variance * phase * phase),
+                damped2 = damped * damped;
+    return Vec2{scale * cos * damped, scale * (2 * cos * cos - 1) * damped2 * damped2};
   };
-  const float x = seen(kX) + seen(kViolet), y = seen(kY), z = seen(kZ);
-  return {3.2404542f * x - 1.5371385f * y - 0.4985314f * z, -0.9692660f * x + 1.8760108f * y + 0.0415560f * z,
-          0.0556434f * x - 0.2040259f * y + 1.0572252f * z};
+  const auto rgb = [](float x, float y, float z) {
+    return Rgb{3.2404542f * x - 1.5371385f * y - 0.4985314f * z, -0.9692660f * x + 1.8760108f * y + 0.0415560f * z,
+               0.0556434f * x - 0.2040259f * y + 1.0572252f * z};
+  };
+  const Vec2 red = seen(kX), violet = seen(kViolet), y = seen(kY), z = seen(kZ);
+  return {rgb(red.x + violet.x, y.x, z.x), rgb(red.y + violet.y, y.y, z.y)};
 }
 
 }  // namespace
@@ -51,7 +60,7 @@ Rgb ThinFilm::at(float cos_h) const {
   const float cos = std::clamp(cos_h, 0.0f, 1.0f);
   const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - cos * cos) / squared(index_)));
   const float outer = schlick(outer_f0_, cos);
-  const Rgb first = sensitivity(path_ * cos_t), second = sensitivity(2 * path_ * cos_t);
+  const auto [first, second] = sensitivity(path_ * cos_t);
   Rgb f = plain_.at(cos_h) * plain_share_;
   for (int c = 0; c < 3; ++c) {
     const float film = film_reflectance(outer, schlick(inner_f0_[c], cos_t), sign_[c] * first[c], second[c]);

@@ -1,5 +1,6 @@
 #include "lib/render/path_tracer.h"
 
+#include <optional>
 #include <utility>
 
 #include "lib/core/sampling.h"
@@ -209,18 +210,22 @@ inline bool EyeTracer::step(EyeState& state) const {
   if (only_specular && state.known.has(LightKind::caustic) && !scene_.tracer.may_pass(state.hit)) return false;
 
   const Vec3 smooth = point.normal;
-  HeroWavelength hero{state.wavelength};
-  const bool draws = disperses(frame.materials[point.material]) && !(state.wavelength > 0 || point.plate > 0);
-  if (draws) [[unlikely]]
-    hero = hero_wavelength(state.random.get1(0, Purpose::wavelength));
-  const SurfaceMaterial material(frame, point, state.cone.width, hero.nm);
+  float wavelength = state.wavelength;
+  std::optional<HeroWavelength> hero;
+  const HeroWavelength* drawn = nullptr;
+  if (frame.materials[point.material].dispersion > 0) [[unlikely]]
+    if (disperses(frame.materials[point.material]) && !(wavelength > 0 || point.plate > 0)) {
+      drawn = &hero.emplace(hero_wavelength(state.random.get1(0, Purpose::wavelength)));
+      wavelength = drawn->nm;
+    }
+  const SurfaceMaterial material(frame, point, state.cone.width, wavelength);
   if (material.values().unlit) [[unlikely]] {
     if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
   bool behind = false;
   const ShadingPoint x = shade(point, material, state, behind);
-  EyeVertex at{x, material, draws ? &hero : nullptr};
+  EyeVertex at{x, material, drawn};
   at.behind = behind;
   // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
   // surface straight and without absorption, so the path forgets the plate's glass.

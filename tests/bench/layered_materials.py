@@ -38,11 +38,19 @@ def bump(x, y, size=32, waves=2, slope=0.3):
     return [round(127.5 + 127.5 * v / math.hypot(*n)) for v in n]
 
 
-def glass(scene, rng):
+def film(rng):
+    return {"iridescenceFactor": rng.choice([1, rng.random()]), "iridescenceIor": rng.uniform(1.2, 2),
+            "iridescenceThicknessMaximum": rng.uniform(100, 1000)}
+
+
+def glass(scene, rng, films):
     index = scene.glass(rng.choice([0, rng.uniform(0.1, 0.5)]), rng.uniform(1.4, 1.8))
     extensions = scene.document["materials"][index]["extensions"]
     extensions["KHR_materials_dispersion"] = {"dispersion": 20 / rng.uniform(20, 60)}
     scene.extensions.add("KHR_materials_dispersion")
+    if films and films.random() < 0.5:
+        extensions["KHR_materials_iridescence"] = film(films)
+        scene.extensions.add("KHR_materials_iridescence")
     return index
 
 
@@ -62,9 +70,7 @@ def layered(scene, rng, only, films=None):
         extensions[coat]["clearcoatNormalTexture"] = {"index": 0}
     extensions = {k: v for k, v in extensions.items() if only in k}
     if films and films.random() < 0.5:
-        extensions["KHR_materials_iridescence"] = {
-            "iridescenceFactor": films.choice([1, films.random()]), "iridescenceIor": films.uniform(1.2, 2),
-            "iridescenceThicknessMaximum": films.uniform(100, 1000)}
+        extensions["KHR_materials_iridescence"] = film(films)
     material = {"pbrMetallicRoughness": {"baseColorFactor": [*(rng.uniform(0.1, 0.9) for _ in range(3)), 1],
                                          "metallicFactor": rng.choice([0, 0, 1]),
                                          "roughnessFactor": rng.uniform(0.3, 1)}, "extensions": extensions}
@@ -111,7 +117,7 @@ def room(path, seed, options):
     for i in range(8):
         centre = (-1.35 + 0.9 * (i % 4), 0.4 + 0.8 * (i // 4), -0.7)
         material = layered(scene, rng, options.only, films)
-        ball(scene, f"ball {i}", centre, 0.36, glass(scene, others) if options.glass and i % 2 else material)
+        ball(scene, f"ball {i}", centre, 0.36, glass(scene, others, films) if options.glass and i % 2 else material)
     scene.camera((0, 1, 1.4), (0, 1, 0), fov=0.95)
     scene.save(path)
 
