@@ -30,9 +30,10 @@ void add_light_options(tools::Tool& tool, tools::RenderOptions& options) {
   tool.file_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light");
   tool.file_option("--meshirrad", options.light.meshirrad,
                    ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache");
-  tool.file_option("--points", options.light.points,
-                   ".irradpoints file, or a pattern: a path ends at a hit that a point represents; with --irradcache "
-                   "only paths that find no record do");
+  tool.file_option(
+      "--points", options.light.points,
+      ".irradpoints file, or a pattern. Paths end where a point holds the indirect light; with --irradcache "
+      "only paths that find no record use the points");
   tool.file_option(
       "--high", options.light.high,
       "high part from photonmap-split, or a pattern; --points (without --points: --photons) is then the low "
@@ -51,9 +52,11 @@ void add_light_options(tools::Tool& tool, tools::RenderOptions& options) {
 }
 
 void add_still_options(tools::Tool& tool, tools::StillOptions& still) {
-  tool.file_option("--still", still.frame,
-                   "EXR file, a frame of another moment during which the camera stands: pixels that change little are "
-                   "this frame and the change, which few samples of both moments measure; only the others are sampled");
+  tool.file_option(
+      "--still", still.frame,
+      "EXR file, a frame of another moment with the same camera. A few samples of both moments measure how "
+      "a pixel changes. Pixels whose change has little noise become this frame plus the change; the "
+      "others are sampled anew");
   tool.number_option("--still-frame", still.number, 0, 1 << 30, "with --still: the frame that it shows");
   tool.file_option("--still-photons", still.light.photons, "with --still: --photons of that moment");
   tool.file_option("--still-dynamic", still.light.dynamic, "with --still: --dynamic of that moment");
