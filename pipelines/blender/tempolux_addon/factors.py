@@ -112,6 +112,11 @@ def set_extensions(result, look, means):
             "sheenColorFactor": [unit(mean("sheen") * c) for c in rec709(mean("sheen_tint", colour=True))],
             "sheenRoughnessFactor": unit(mean("sheen_roughness")),
         }
+    if mean("passing") > 0:
+        extensions["KHR_materials_diffuse_transmission"] = {
+            "diffuseTransmissionFactor": unit(mean("passing")),
+            "diffuseTransmissionColorFactor": [unit(c) for c in rec709(mean("passing_colour", colour=True))],
+        }
     if mean("film") > 0:
         extensions["KHR_materials_iridescence"] = {
             "iridescenceFactor": 1.0,

@@ -31,7 +31,8 @@ class Look(dict):
             anisotropic=0.0,
             anisotropic_rotation=0.0,
             subsurface=0.0,
-            sheet=0.0,
+            passing=0.0,                         # share of the matte part that sends light to the other side
+            passing_colour=WHITE,
             displacement=None,
         )
         self.update(values)
@@ -210,9 +211,8 @@ def glossy(node, stack):
 
 
 def translucent(node, stack):
-    look = matte(**inputs(node, stack, colour="Color"), transmission=1.0, sheet=1.0)
-    look.lose("its Translucent becomes a sheet of the roughest glass")
-    return look
+    colour = inputs(node, stack, colour="Color")["colour"]
+    return matte(colour, passing=1.0, passing_colour=colour, normal=bent_normal(node, stack))
 
 
 def subsurface(node, stack):
@@ -378,6 +378,12 @@ def blended(factor, a, b):
             look[key] = b[key]
         elif key in ("base", "roughness", "ior", "level", "tint") and weight_b == 0:
             look[key] = a[key]
+        elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 1 and b["passing"] == 0:
+            look[key] = b[key]
+        elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 0 and b["passing"] == 1:
+            look[key] = a[key]
+        elif key == "passing_colour" and 0 in (a["passing"], b["passing"]):
+            look[key] = (b if a["passing"] == 0 else a)[key]
         else:
             look[key] = blend(factor, a.get(key, 0.0), b.get(key, 0.0))
     if weight_a == 0 or weight_b == 0:       # emission beside a surface takes its share of it

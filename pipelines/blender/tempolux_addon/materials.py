@@ -18,10 +18,6 @@ from .looks import fog_of
 from .notes import Damage
 from .values import Source, as_number, as_tuple, is_constant, pick, resolve, times
 
-RENDERED = {"KHR_materials_specular", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume",
-            "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_sheen",
-            "KHR_materials_anisotropy"}     # extensions that tempolux renders; others are written and named
-WORDS = {"KHR_materials_iridescence": "thin film"}
 SINGLE = (
     "ior",
     "level",
@@ -33,6 +29,7 @@ SINGLE = (
     "sheen_tint",
     "film",
     "film_ior",
+    "passing",
     "anisotropic",
     "anisotropic_rotation",
 )  # no texture of these: a mean
@@ -116,7 +113,7 @@ class Materials:
         index = len(self.document.json.get("materials", []))
         self.animate(material, index, result)
         extensions = result.get("extensions", {})
-        if solid > 0 and "KHR_materials_transmission" in extensions and not as_number(look["sheet"]):
+        if solid > 0 and "KHR_materials_transmission" in extensions:
             body = extensions["KHR_materials_volume"] = {"thicknessFactor": solid}
             fog = fog_of(volume)
             if fog:
@@ -125,10 +122,6 @@ class Materials:
                 self.shot.notes.lost(Damage.DETAIL, name, "the volume inside of it is left out")
         for extension in extensions:
             self.document.use(extension)
-            if extension not in RENDERED:
-                self.shot.notes.lost(
-                    Damage.DETAIL, name, f"{WORDS[extension]} is written into the file; tempolux does not render it yet"
-                )
         if as_number_or(look["subsurface"], 1) > 0:
             self.shot.notes.lost(Damage.MATERIAL, name, "subsurface scattering is left out: it is matte")
         self.document.append("materials", result)
@@ -211,7 +204,7 @@ class Maker:
         plain = plain_material(look)
         set_extensions(plain, look, self.means)
         result.update(plain)
-        for step in (self.base, self.rough, self.normal, self.emission, self.transmission):
+        for step in (self.base, self.rough, self.normal, self.emission, self.transmission, self.passing):
             with self.shot.notes.guard(Damage.MATERIAL, self.name, f"{step.__name__} by nodes is left out"):
                 step(result)
         if self.baked:
@@ -424,6 +417,25 @@ class Maker:
             extension["transmissionTexture"] = self.info(
                 self.document.texture(png(pixels), CLAMP, name=f"{self.name} transmission")
             )
+
+    def passing(self, result):
+        """The colour of the light that a translucent surface lets through, where it is not one colour."""
+        value = self.look["passing_colour"]
+        extension = result.get("extensions", {}).get("KHR_materials_diffuse_transmission")
+        if extension is None or is_constant(value):
+            return
+        picture = picture_of(value)
+        extension["diffuseTransmissionColorFactor"] = [1.0, 1.0, 1.0]
+        if self.fits(picture) and picture.channel is None:
+            info = self.info(self.image(self.base_image(picture, None), picture), picture)
+        else:
+            pixels = rec709_pixels(self.bake("translucent colour", value))[..., :3]
+            if pixels.shape[0] == 1:
+                extension["diffuseTransmissionColorFactor"] = [unit(c) for c in pixels[0, 0]]
+                return
+            data = png(to_srgb(pixels))
+            info = self.info(self.document.texture(data, CLAMP, name=f"{self.name} translucent colour"))
+        extension["diffuseTransmissionColorTexture"] = info
 
 
 def covered(pixels):
