@@ -39,19 +39,23 @@ bool flip_member(MaterialValues& m, int n) {
   auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission, thin_walled,
          attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat, clearcoat_roughness,
          iridescence, iridescence_ior, iridescence_thickness_minimum, iridescence_thickness_maximum, sheen_color,
-         sheen_roughness, anisotropy, anisotropy_rotation, axes] = m;
+         sheen_roughness, anisotropy, anisotropy_rotation, diffuse_transmission, diffuse_transmission_color, axes,
+         from_behind] = m;
   return flip_one(n, base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
                   thin_walled, attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat,
                   clearcoat_roughness, iridescence, iridescence_ior, iridescence_thickness_minimum,
-                  iridescence_thickness_maximum, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation);
+                  iridescence_thickness_maximum, sheen_color, sheen_roughness, anisotropy, anisotropy_rotation,
+                  diffuse_transmission, diffuse_transmission_color);
 }
 bool flip_member(MaterialTextures& t, int n) {
   auto& [base_color, metallic_roughness, normal, emission, transmission, specular, specular_color, clearcoat,
-         clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy, iridescence,
-         iridescence_thickness, normal_scale, clearcoat_normal_scale, grain, vertex_colors] = t;
+         clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy, diffuse_transmission,
+         diffuse_transmission_color, iridescence, iridescence_thickness, normal_scale, clearcoat_normal_scale, grain,
+         vertex_colors] = t;
   return flip_one(n, base_color, metallic_roughness, normal, emission, transmission, specular, specular_color,
                   clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, anisotropy,
-                  iridescence, iridescence_thickness, normal_scale, clearcoat_normal_scale);
+                  diffuse_transmission, diffuse_transmission_color, iridescence, iridescence_thickness, normal_scale,
+                  clearcoat_normal_scale);
 }
 bool flip_member(PunctualLight& l, int n) {
   auto& [name, kind, intensity, inner, outer, size] = l;
