@@ -11,10 +11,15 @@ namespace tempolux {
 /// For whom an advice is written: options of the tools, or variables of make.
 enum class AdviceFor { tools, make };
 
+/// What a frame's indirect light comes from: photons, points and records, or a light texture.
+enum class LitBy { points, texture };
+
 /// Advice to users on how to reduce the bias of a layer, such as "more points (POINTS=...) mend it". Irradiance points,
-/// records and photons cause bias. Layers that frames sample without bias get "".
-inline std::string advice_on_bias(Layer layer, AdviceFor reader) {
+/// records, light textures and photons cause bias. Layers that frames sample without bias get "".
+inline std::string advice_on_bias(Layer layer, AdviceFor reader, LitBy lit = LitBy::points) {
   const bool make = reader == AdviceFor::make;
+  if (lit == LitBy::texture && (layer == Layer::indirect || layer == Layer::specular))
+    return make ? "METHOD=frames mends it" : "points and records in place of --meshirrad mend it";
   const std::string photons = make ? "more photons (PHOTONS)" : "more photons (photon-trace --photons)";
   const std::string points =
       make ? "more points (POINTS=\"--point-count N\")"

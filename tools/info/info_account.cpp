@@ -79,12 +79,14 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
 FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
   std::size_t unbiased = 0;
+  LitBy lit = LitBy::points;
   for (const std::string& file : files) {
     ExrReadOptions attributes;  // and one channel: an EXR image without any is invalid
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l].name, file, sums[l]);
     unbiased += number(image, "audit.unbiased") != nullptr;
+    if (number(image, "audit.texture")) lit = LitBy::texture;
   }
   FramesAccount account;
   bool audited = false;
@@ -105,7 +107,7 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     account.line += (account.line.empty() ? "audit: " : ", ") + text;
     if (sum.biased())
       account.warnings.push_back(std::string(kLayers[l].in_words) + " is off by " + percent(sum.mean(), sum.error()) +
-                                 " of the picture; " + advice_on_bias(kLayers[l].layer, AdviceFor::make));
+                                 " of the picture; " + advice_on_bias(kLayers[l].layer, AdviceFor::make, lit));
   }
   if (!unknown.empty())
     account.line +=

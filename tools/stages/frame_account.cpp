@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "lib/audit/advice.h"
 #include "lib/core/formatted.h"
 
 namespace tempolux::tools {
@@ -126,7 +125,7 @@ void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise) 
 }
 
 void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
-                    const FrameOptions& asked, const std::vector<std::string>& object_names) {
+                    const FrameOptions& asked, const std::vector<std::string>& object_names, LitBy lit) {
   for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
   for (const AuditEntry& entry : audit) {
@@ -134,7 +133,7 @@ void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector
     const std::string line = "audit: " + audit_line(entry, audit, object_names);
     tool.say(line);
     if (is_biased(entry) && entry.layer != Layer::direct)
-      tool.warn(line + "; " + advice_on_bias(entry.layer, AdviceFor::tools));
+      tool.warn(line + "; " + advice_on_bias(entry.layer, AdviceFor::tools, lit));
   }
   if (!rendered.noise.known()) return;
   tool.say(noise_line(rendered));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/audit/advice.h"
 #include "lib/audit/audit.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/tool_main.h"
@@ -22,8 +23,8 @@ void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise);
 
 /// Reports the figures: in --stats, as lines with --verbose, as a warning if `asked` (FrameOptions::seen_error) was not
 /// reached, and as a warning for each biased layer (is_biased). object_names: the names in the scene's file, by
-/// id.object.
+/// id.object. lit: what advice on a bias is about.
 void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
-                    const FrameOptions& asked, const std::vector<std::string>& object_names);
+                    const FrameOptions& asked, const std::vector<std::string>& object_names, LitBy lit);
 
 }  // namespace tempolux::tools

@@ -136,6 +136,11 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   bool unbiased = false;
   const std::vector<AuditEntry> audited = audit(tool, options, made, unbiased);
   std::map<std::string, double> account = account_of(rendered, audited);
+  const LitBy lit_by = options.light.meshirrad.empty() ? LitBy::points : LitBy::texture;
+  if (lit_by == LitBy::texture && !audited.empty()) {
+    account["audit.texture"] = 1;
+    tool.stats().set("audit.texture", 1);
+  }
   if (unbiased) {
     account["audit.unbiased"] = 1;
     tool.stats().set("audit.unbiased", 1);
@@ -161,7 +166,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   tool.stats().end_phase();
   rendered.rays += still.rays;
   count_work(tool, rendered, lit.tracer());
-  report_account(tool, rendered, audited, frame_options, input.scene().object_names);
+  report_account(tool, rendered, audited, frame_options, input.scene().object_names, lit_by);
 }
 
 /// Only for frames by path tracing: the tools that made photons or a cache have given this warning already.

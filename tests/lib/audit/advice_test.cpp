@@ -30,6 +30,14 @@ TEST(Advice, FollowsFromTheLayer) {
   }
 }
 
+/// A preview has neither points nor records. Seen to fail: it was advised more points.
+TEST(Advice, PreviewsAreAdvisedAnotherMethod) {
+  for (const Layer layer : {Layer::indirect, Layer::specular})
+    EXPECT_EQ(advice_on_bias(layer, AdviceFor::make, LitBy::texture), "METHOD=frames mends it");
+  EXPECT_EQ(advice_on_bias(Layer::caustic, AdviceFor::make, LitBy::texture),
+            advice_on_bias(Layer::caustic, AdviceFor::make));
+}
+
 TEST(Advice, NamesOptionsToThoseWhoRunTools) {
   EXPECT_NE(advice_on_bias(Layer::indirect, AdviceFor::tools).find("--point-count"), std::string::npos);
   EXPECT_EQ(advice_on_bias(Layer::indirect, AdviceFor::tools).find("POINTS"), std::string::npos);
