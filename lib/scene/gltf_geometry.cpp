@@ -131,7 +131,7 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   }
 }
 
-std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name,
+std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const std::string& name,
                            const Primitive& primitive, const std::string& place) {
   const auto found = source.attributes.find(name);
   if (found == source.attributes.end()) return {};
@@ -187,7 +187,6 @@ void read_colors(Import& import, const tinygltf::Primitive& source, const std::s
 void note_ignored(Import& import, const tinygltf::Primitive& source) {
   for (const auto& [name, accessor] : source.attributes) {
     if (name == "COLOR_1") import.ignore("second and further vertex colours");
-    if (name == "TEXCOORD_2") import.ignore("third and further texture coordinates");
   }
 }
 
@@ -222,9 +221,12 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   if (before > primitive.triangles.size()) import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
     read_normals(import, normal->second, place + ".NORMAL", primitive);
-  primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive, place);
-  primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive, place);
   const bool has_material = source.material >= 0 && source.material < int(import.model.materials.size());
+  using Sets = std::array<std::uint32_t, 2>;
+  const Sets sets = has_material ? import.uv_sets[std::size_t(source.material)] : Sets{0, 1};
+  primitive.uvs = read_uvs(import, source, "TEXCOORD_" + std::to_string(sets[0]), primitive, place);
+  if (sets[1] != kNone)
+    primitive.uvs1 = read_uvs(import, source, "TEXCOORD_" + std::to_string(sets[1]), primitive, place);
   if (!has_material && source.material != -1)
     import.mend(place + ".material",
                 "material " + std::to_string(source.material) + " does not exist; glTF's default material is taken", 1);

@@ -163,6 +163,30 @@ MaterialTextures read_textures(Import& import, const tinygltf::Material& source,
   return textures;
 }
 
+/// A primitive keeps two sets of texture coordinates. If a material reads a set beyond TEXCOORD_1, its textures number
+/// their sets 0 and 1 in the order of material_textures(), base colour first. Textures on further sets are left out.
+/// Returns the sets of the file that the material reads as 0 and 1.
+std::array<std::uint32_t, 2> number_uv_sets(Import& import, MaterialTextures& textures) {
+  std::array<std::uint32_t, 2> sets{kNone, kNone};
+  bool beyond = false;
+  for (const MaterialTexture& row : material_textures())
+    beyond |= textures.*row.member && (textures.*row.member).uv_set > 1;
+  if (!beyond) return {0, 1};
+  for (const MaterialTexture& row : material_textures()) {
+    Texture& texture = textures.*row.member;
+    if (!texture) continue;
+    const auto slot = std::ranges::find_if(sets, [&](std::uint32_t s) { return s == kNone || s == texture.uv_set; });
+    if (slot == sets.end()) {
+      import.ignore("textures on a third set of coordinates of their material");
+      texture = {};
+      continue;
+    }
+    *slot = texture.uv_set;
+    texture.uv_set = std::uint32_t(slot - sets.begin());
+  }
+  return sets;
+}
+
 Material read_material(Import& import, std::size_t index, ColorFactors& emission) {
   const tinygltf::Material& source = import.model.materials[index];
   const std::string place = place_of("materials", index, source.name);
@@ -180,6 +204,7 @@ Material read_material(Import& import, std::size_t index, ColorFactors& emission
   if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
   MaterialTextures textures = read_textures(import, source, place);
   read_specular_glossiness(import, source, place, material, textures);
+  import.uv_sets.push_back(number_uv_sets(import, textures));
   textures.grain = source.extensions.contains("KHR_materials_anisotropy");
   if (textures.any()) material.textures = textures;
   ignore_textures(import, source, place);

@@ -27,7 +27,9 @@ struct Import {
   std::vector<int> node_from_source{};           ///< index in the scene of each node of the file; -1: not in the scene
   std::vector<int> mesh_from_source{};           ///< likewise for meshes; -1: not used or without triangles
   std::vector<ColorFactors> emission_factors{};  ///< of each material of the scene
-  std::vector<EncodedImage> images{};            ///< images of the scene, in the order in which textures name them
+  /// Of each material of the file: the sets TEXCOORD_n that its primitives keep. kNone: none.
+  std::vector<std::array<std::uint32_t, 2>> uv_sets{};
+  std::vector<EncodedImage> images{};              ///< images of the scene, in the order in which textures name them
   std::vector<std::uint32_t> image_from_source{};  ///< index in `images` of each image of the file; kNone: not read
   /// Counts one kind of repair or ignored feature.
   struct Mended {

@@ -148,10 +148,6 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
   const tinygltf::Texture& source = import.model.textures[std::size_t(use.index)];
   texture.uv_set = std::uint32_t(use.uv_set);
   if (use.transform) read_transform(import, *use.transform, place + ".extensions.KHR_texture_transform", texture);
-  if (texture.uv_set > 1) {
-    import.ignore("textures on coordinates beyond TEXCOORD_1");
-    return Texture{};
-  }
   if (source.sampler >= 0) {
     const bool exists = std::size_t(source.sampler) < import.model.samplers.size();
     if (!exists)

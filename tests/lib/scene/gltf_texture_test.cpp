@@ -52,6 +52,33 @@ TEST(GltfTexture, ImagesComeFromDataUrisBufferViewsAndFiles) {
             (temporary_folder() / "t/pic.png").string());
 }
 
+/// Base colour on TEXCOORD_3, emission on TEXCOORD_1, roughness on TEXCOORD_0: a primitive keeps the first two. Seen to
+/// fail: the base colour was left out.
+TEST(GltfTexture, MaterialsReadAnyTwoSetsOfCoordinates) {
+  GltfMaker maker = textured({{"uri", data_uri(small_png())}}, {{"index", 0}, {"texCoord", 3}});
+  maker.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+  maker.json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+  auto& attributes = maker.json["meshes"][0]["primitives"][0]["attributes"];
+  for (const int set : {1, 3}) {
+    const float at = 0.1f * float(set);
+    attributes["TEXCOORD_" + std::to_string(set)] =
+        maker.add_accessor<float>({at, 1, 1, 1, 1, 0, 0, 0}, 5126, "VEC2", 2);
+  }
+  const Scene two = maker.load();
+  EXPECT_TRUE(two.warnings.empty()) << two.warnings.front();
+  EXPECT_EQ(two.materials[0].textures->base_color.uv_set, 0u);
+  EXPECT_EQ(two.materials[0].textures->emission.uv_set, 1u);
+  const Primitive& square = two.meshes[0].primitives[0];
+  EXPECT_FLOAT_EQ(square.uvs[0].x, 0.3f);
+  EXPECT_FLOAT_EQ(square.uvs1[0].x, 0.1f);
+
+  maker.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
+  const Scene three = maker.load();
+  ASSERT_EQ(three.warnings.size(), 1u);
+  EXPECT_CONTAINS(three.warnings[0], "textures on a third set of coordinates");
+  EXPECT_TRUE(three.materials[0].textures->base_color);
+}
+
 TEST(GltfTexture, ImagesThatNoTextureNamesAreNotRead) {
   GltfMaker maker = textured({{"uri", data_uri(small_png())}});
   maker.json["images"].push_back({{"uri", "there-is-none.png"}});
