@@ -43,7 +43,7 @@ struct IncomingRadiance::Met {
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
   float leg = INFINITY;          ///< m: length of the path's last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
-  std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures, or of a plate
+  std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures, of a plate, of a far side
 
   // follow() has an array of hits. Without this constructor the array would be cleared, which
   // takes 2 % of the time of records.
@@ -112,13 +112,17 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
 /// the path before that part. Evaluates the material's textures at the hit; a normal map changes met.hit.normal.
 /// At a surface that transmits diffusely, draws the side from which the ray goes on, by random numbers of `key`.
 inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, std::uint64_t key, Met& met) const {
-  look_at(wo, met);
   met.leg = leg;
   met.distance = before + leg;
   met.chance = 1;
   met.behind = false;
-  if (transmits_diffusely(tracer_.frame().materials[met.hit.material])) [[unlikely]]
-    draw_side(key, met);
+  if (transmits_diffusely(tracer_.frame().materials[met.hit.material])) [[unlikely]] {
+    SurfacePoint smooth = met.hit;
+    look_at(wo, met);
+    draw_side(key, smooth, met);
+  } else {
+    look_at(wo, met);
+  }
 }
 
 /// Sets Met::bsdf, wo and geometric.
@@ -134,9 +138,9 @@ inline void IncomingRadiance::look_at(Vec3 wo, Met& met) const {
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
 }
 
-void IncomingRadiance::draw_side(std::uint64_t key, Met& met) const {
-  SurfacePoint read = met.hit;
-  const SurfaceMaterial material(tracer_.frame(), read);
+/// Draws the side from which a ray goes on. smooth: the hit without its normal map.
+void IncomingRadiance::draw_side(std::uint64_t key, SurfacePoint& smooth, Met& met) const {
+  const SurfaceMaterial material(tracer_.frame(), smooth);
   const SideChoice side = choose_side(*met.bsdf, SeenSide(met.hit, met.wo).wo_local, material,
                                       PathRandom(key, kSideNumbers).get1(0, Purpose::side));
   met.chance = side.probability;
@@ -237,7 +241,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
 /// close, the ray continues, and `to.further` receives it. The other lobes are followed along one sampled direction.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
-  if (met.chance == 1) [[likely]]
+  if (met.chance == 1 && !met.behind) [[likely]]
     return reflected_on_side(met, point, from, depth, to);
   Further drawn = from;
   drawn.weight *= 1 / met.chance;

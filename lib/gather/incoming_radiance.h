@@ -78,7 +78,7 @@ class IncomingRadiance {
   struct Gathered;
   void meet(Vec3 wo, float leg, float before, std::uint64_t key, Met& met) const;
   void look_at(Vec3 wo, Met& met) const;
-  void draw_side(std::uint64_t key, Met& met) const;
+  void draw_side(std::uint64_t key, SurfacePoint& smooth, Met& met) const;
   float remaining_share(const Met& met, const PointLookup::Light* point, const Further& from) const;
   template <class Take, class Key, class TakeMedium, class Miss>
   void follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take, const Key& key,

@@ -15,17 +15,20 @@ namespace tempolux {
 /// A surface point that a camera sees at a pixel, directly or through mirrors and glass.
 struct SeenPoint {
   SurfacePoint surface;
-  Vec3 normal;             ///< shading normal on the side seen
+  Vec3 normal;             ///< shading normal on the side that is seen
   float footprint = 0;     ///< m: size of a pixel at the point
-  bool by_choice = false;  ///< true if the path chose one of several directions at a surface
+  bool by_choice = false;  ///< true if the path chose one of several directions, or one of the two sides of a surface
   /// The path's throughput [1] between point and camera: transmittance and reflectance on the path, divided by the
   /// probabilities of the chosen branches. With Look::random the mean of passed x (radiance of the point) is the
   /// radiance that the camera receives.
   Rgb passed{1.0f};
+  bool mirrored = false;  ///< true if the camera sees the point by mirrors or glass
+  bool far_side =
+      false;  ///< true if the side is the one that the camera sees through the surface (diffuse_transmission.h)
 };
 
-/// A raster position of a picture, in pixels. Where the path forks (glass, gloss), `random` chooses the branch; without
-/// `random` the path takes the more probable branch.
+/// A raster position of a picture, in pixels. Where the path forks (glass, gloss, paper), `random` chooses the branch;
+/// without `random` the path takes the more probable branch.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;

@@ -87,9 +87,12 @@ class Bsdf {
   /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
   /// too.
   bool has_lambert() const { return has_lambert_; }
-  /// True if the Lambert lobe reflects any light, or if the surface transmits light diffusely from any side.
+  /// True if the Lambert lobe reflects any light, or if the material transmits diffusely: then also where the lobe of
+  /// this side is black.
   bool has_diffuse() const { return diffuse_; }
-  bool has_specular() const { return lobes_ > 0 || glass_; }  ///< true if there is an S lobe
+  bool has_specular() const {
+    return lobes_ > 0 || glass_;
+  }  ///< true if there is an S lobe; on a far side it weighs light only
   /// True if all S lobes are mirrors or smooth glass, or there is none.
   bool specular_is_delta() const { return spread_ == 0; }
   /// The share of light samples that a caller should draw on the side z < 0, from where eval_specular() transmits

@@ -3,11 +3,11 @@
 //
 // With wi and wo on different sides of the surface and the coupling c of bsdf.h, the lobe is
 //     f(wi, wo) = tau / pi  c(wi) c(wo).
-// c depends only on the angle between a direction and the normal. So f is also the value of a reflecting Lambert lobe
-// of the colour tau for light from wi and a viewer at -wo, both on one side. A path that meets such a surface chooses
-// the side from which it goes on. On its own side it finds the reflecting lobes. On the other side it finds one Lambert
-// lobe with the viewer at -wo, so light samples, records, points and photons of that side serve it as they serve any
-// surface.
+// c keeps its value if a direction and the normal are both turned round. So f is also the value of a reflecting Lambert
+// lobe of the colour tau for light from wi and a viewer at -wo, both on one side. A path that meets such a surface
+// draws the side from which it goes on. On its own side it finds the reflecting lobes. On the far side it finds one
+// Lambert lobe with the viewer at -wo, so light samples, records, points and photons of that side serve it as they
+// serve any surface.
 #pragma once
 
 #include "lib/material/bsdf.h"
@@ -22,10 +22,11 @@ inline MaterialValues from_behind(MaterialValues material) {
   return material;
 }
 
-/// Reflectances of both Lambert lobes together, without coupling [1].
-inline Rgb diffuse_albedo_of_both(const MaterialValues& material) {
-  const Rgb reflected = Bsdf(material).diffuse_albedo();
-  return transmits_diffusely(material) ? reflected + Bsdf(from_behind(material)).diffuse_albedo() : reflected;
+/// Reflectances of both Lambert lobes together, without coupling and without the share of glass [1].
+inline Rgb diffuse_albedo_of_both(const MaterialValues& m) {
+  const Rgb reflected = Bsdf(m).diffuse_albedo();
+  if (!transmits_diffusely(m)) return reflected;
+  return reflected + m.diffuse_transmission_color * (m.diffuse_transmission * (1 - m.metallic));
 }
 
 /// The side from which a path goes on at a surface that transmits diffusely.

@@ -64,8 +64,9 @@ class Inside {
   /// n^2 of the solid `met` if the path started inside `met` and reaches its boundary for the first time, else 1.
   /// Camera paths do not divide the radiance of a lamp inside a solid by n^2. To match them, a photon of the lamp
   /// carries n^2 times the watts from here on. front: the side that the path came from.
-  float index_squared_of_start(std::span<const Material> materials, std::uint32_t met, bool front) const {
-    const float ior = materials[met].ior;
+  float index_squared_of_start(std::span<const Material> materials, std::uint32_t met, bool front,
+                               float wavelength_nm = 0) const {
+    const float ior = index_at(materials[met], wavelength_nm);
     return !front && count_ == 0 && ior > 0 ? ior * ior : 1;
   }
   /// Updates the state after an event S at the boundary of a solid (is_solid_glass). front: the side that the path came

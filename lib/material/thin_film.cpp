@@ -45,8 +45,8 @@ Sensitivity sensitivity(float path) {
 ThinFilm::ThinFilm(const Schlick& plain, float factor, float index, float thickness)
     : plain_(plain), plain_share_(1 - factor), film_share_(factor * plain.f90) {
   const float t = std::clamp(thickness / 30, 0.0f, 1.0f);
-  index_ = 1 + (std::max(1.0f, index) - 1) * (t * t * (3 - 2 * t));
-  path_ = 2 * index_ * thickness * 1e-9f;
+  index_ = 1 + (std::clamp(index, 1.0f, 1e4f) - 1) * (t * t * (3 - 2 * t));
+  path_ = std::min(2 * index_ * std::min(thickness, 1e9f) * 1e-9f, 0.01f);  // S is 0 long before a centimetre
   outer_f0_ = normal_reflectance(index_);
   for (int c = 0; c < 3; ++c) {
     const float root = std::sqrt(std::clamp(plain.f0[c] / plain.f90, 0.0f, 0.9999f)), base = (1 + root) / (1 - root);

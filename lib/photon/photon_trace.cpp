@@ -316,8 +316,7 @@ std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uin
     path.flux = e.flux * share;
     if (!slot_inside_.empty()) [[unlikely]] {
       path.inside = slot_inside_[e.slot];
-      path.flux *=
-          path.inside.index_squared(tracer_.frame().materials, path.wavelength);  // as index_squared_of_start does
+      path.flux *= path.inside.index_squared(tracer_.frame().materials);  // as index_squared_of_start does
     }
     path.ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
     if (e.chord > 0 && !media_) [[unlikely]]
@@ -428,13 +427,14 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_from(path, at, arrive(path, at, draw.bounce, batch), draw, batch);
 }
 
-/// Scatters a photon at a surface that transmits diffusely. The photon goes on from one of both sides, which is drawn.
-/// On the other side it scatters as if it had come from there, against its direction (diffuse_transmission.h).
+/// Scatters a photon at a surface that transmits diffusely. The photon goes on from one of the two sides, which is
+/// drawn. On the other side it scatters as if it had come from there, against its direction (diffuse_transmission.h).
 bool PhotonTracer::scatter_to_a_side(Path& path, Meeting& at, const MaterialValues& material, Rgb flux,
                                      const Draw& draw, PhotonBatch& batch) const {
   const SideChoice side = choose_side(at.bsdf, at.wi_local, material, path.random.get1(draw.bounce, Purpose::side));
   at.chance = side.probability;
   if (!side.behind) return scatter_from(path, at, flux, draw, batch);
+  if (bounds_solid_at(at.point)) path.inside.scatter(at.point.material, at.front, true);
   const Arrival arrival(at.point, at.wi);
   const Bsdf through(from_behind(material), !at.front, arrival.frame, Carries::flux);
   return scatter_from(path, {arrival, at.point, at.distance, through, at.coverage, at.smooth, !at.front, at.chance},
@@ -469,7 +469,7 @@ void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uin
     weight = at.correction_by(at.smooth);
   if (!(stores_[std::size_t(kind)] && at.bsdf.has_lambert() && weight > 0)) return;
   Rgb stored = flux * weight;
-  if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
+  if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials, path.wavelength);
   if (at.coverage != 1) stored *= 1 / at.coverage;
   // Field by field: copying a record of 32 bytes that was just assembled would stall.
   formats::Photon& photon = batch.block.photons.emplace_back();
@@ -561,7 +561,8 @@ bool PhotonTracer::scatter_from(Path& path, const Meeting& at, Rgb flux, const D
   batch.specular_ray_count += survives && !next.diffuse;
   if (bounds_solid_at(point) && !next.diffuse) {
     const std::span<const Material> materials = tracer_.frame().materials;
-    if (const float larger = path.inside.index_squared_of_start(materials, point.material, at.front); larger != 1) {
+    if (const float larger = path.inside.index_squared_of_start(materials, point.material, at.front, path.wavelength);
+        larger != 1) {
       path.balance->emitted += Rgbd(path.flux * larger) - Rgbd(path.flux);
       path.flux *= larger;
     }

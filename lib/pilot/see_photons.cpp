@@ -44,7 +44,8 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   if (!seen) return {};
   const Vec3 normal = seen->surface.normal_geometric;
   const bool front = dot(normal, seen->normal) > 0;
-  const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
+  const SurfaceMaterial read(scene.frame(), seen->surface, seen->footprint);
+  const MaterialValues material = seen->far_side ? from_behind(read) : read.values();
   const Bsdf bsdf(material, front, Frame(seen->normal));
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
   const FootprintLight light =
@@ -64,7 +65,7 @@ std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, co
     const Vec2 at = look_at(i);
     const Look look{at.x * float(view.width()), at.y * float(view.height()), PathRandom(kLooks, i)};
     places[i] = seen_through(scene.tracer, view, look);
-    if (places[i] && !places[i]->by_choice) places[i].reset();
+    if (places[i] && !places[i]->mirrored) places[i].reset();
   });
   if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) places.clear();
   return places;

@@ -24,7 +24,7 @@ struct NeighbourFrame {
 /// passed at random, once per pixel. Where the ray meets no surface, Z is infinity, id is kNone, all else is 0.
 /// - Z: CameraView::depth [m]; P: position in world space [m]; id: object.
 /// - N: shading normal with normal map, unit, world axes, on the side that is seen.
-/// - albedo: Bsdf::diffuse_albedo, with textures at the pixel's level.
+/// - albedo: diffuse_albedo_of_both(), with textures at the pixel's level.
 /// - motion: in pixels, +u right, +v up, to the point's place in the frame `next` (forward) and `previous` (backward).
 void add_data_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                        const NeighbourFrame& next, const NeighbourFrame& previous, Image& image);

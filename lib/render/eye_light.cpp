@@ -101,8 +101,8 @@ void EyeTracer::add_known_light(EyeVertex& at, Vec3 smooth, const EyeState& stat
 
 /// Takes one sample of the suns (of_sun) or of the other lights, and adds what each lobe scatters, weighed by MIS
 /// [Veach 1997 (9.14)], to the layer of the lobe.
-inline void EyeTracer::sample_light(const EyeVertex& at, const EyeState& state, const PixelRandom& random, bool of_sun,
-                                    Layers& result) const {
+void EyeTracer::sample_light(const EyeVertex& at, const EyeState& state, const PixelRandom& random, bool of_sun,
+                             Layers& result) const {
   const ShadingPoint& x = at.x;
   const bool has_diffuse = samples_diffuse(at), has_specular = samples_specular(at, state);
   // Rough glass also transmits light from behind. The sample is taken on one side, which is drawn.
@@ -164,8 +164,8 @@ void EyeTracer::choose_spots(EyeVertex& at, const EyeState& state) const {
 
 /// Takes one sample of the light of spots. Adds the light that records leave out, if `spots` are
 /// KnownLight::lamp_spots, and the light that lobes S of the spot or of this surface reflect.
-inline void EyeTracer::sample_spots(const BrightPoints& spots, const EyeVertex& at, const EyeState& state,
-                                    const PixelRandom& random, Layers& result) const {
+void EyeTracer::sample_spots(const BrightPoints& spots, const EyeVertex& at, const EyeState& state,
+                             const PixelRandom& random, Layers& result) const {
   const ShadingPoint& x = at.x;
   const StoredAt stored(scene_, x);
   const std::optional<BrightPoints::LampSpot> spot =

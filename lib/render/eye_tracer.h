@@ -102,14 +102,15 @@ class EyeTracer {
   Passed pass_media(const Media& media, EyeState& state) const;
   bool scatter_in_medium(const MediumPoint& point, EyeState& state) const;
   bool scatter(const EyeVertex& at, float u_lobe, float times, EyeState& state) const;
-  bool survives(EyeState& state, float most) const;
+  inline bool survives(EyeState& state, float most) const;
   /// Sets the state after an event D.
   static void begin_matte(LightKinds known, EyeState& state) {
     state.matte = true, state.specular = false, state.refracted = false, state.known = known;
     state.distance = 0, state.spread = 1;
   }
-  void go_on(const Ray& ray, EyeState& state) const;
-  ShadingPoint shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state, bool& behind) const;
+  inline void go_on(const Ray& ray, EyeState& state) const;
+  inline ShadingPoint shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state,
+                            bool& behind) const;
   bool samples_diffuse(const EyeVertex& at) const {
     return !at.known.has(LightKind::direct) && at.x.bsdf.has_diffuse();
   }
@@ -118,21 +119,21 @@ class EyeTracer {
            !at.x.bsdf.specular_is_delta();
   }
   Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
-  void sample_light(const EyeVertex& at, const EyeState& state, const PixelRandom& random, bool of_sun,
-                    Layers& result) const;
-  void sample_spots(const BrightPoints& spots, const EyeVertex& at, const EyeState& state, const PixelRandom& random,
-                    Layers& result) const;
+  inline void sample_light(const EyeVertex& at, const EyeState& state, const PixelRandom& random, bool of_sun,
+                           Layers& result) const;
+  inline void sample_spots(const BrightPoints& spots, const EyeVertex& at, const EyeState& state,
+                           const PixelRandom& random, Layers& result) const;
   void add_light(const EyeVertex& at, const EyeState& state) const;
-  void add_met(Rgb light, const EyeState& state) const;
-  void arrive(const SurfacePoint& point, EyeState& state) const;
+  inline void add_met(Rgb light, const EyeState& state) const;
+  inline void arrive(const SurfacePoint& point, EyeState& state) const;
   void add_known_light(EyeVertex& at, Vec3 smooth, const EyeState& state) const;
-  bool leave(const EyeVertex& at, EyeState& state) const;
-  bool step(EyeState& state) const;
+  inline bool leave(const EyeVertex& at, EyeState& state) const;
+  inline bool step(EyeState& state) const;
   void choose_spots(EyeVertex& at, const EyeState& state) const;
   bool was_sampled(float divided_leg, Vec3 lamp, Vec3 position) const {
     return divided_leg > 0 && known_->samples_spot(divided_leg, length(lamp - position));
   }
-  void go_onward(const EyeVertex& at, float u_lobe, float times, const EyeState& state) const;
+  inline void go_onward(const EyeVertex& at, float u_lobe, float times, const EyeState& state) const;
   /// Adds `rays` to the counter `as`. If the path belongs to the part onward, also adds the rays' cost to
   /// counts_.onward.
   void count(std::uint64_t rays, std::uint64_t& as, const EyeState& state) const {

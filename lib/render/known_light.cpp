@@ -43,7 +43,7 @@ SeenPoint seen_from_a_side(SpecularChain& chain, const ShadingPoint& shading, fl
                                       look.random ? look.random->get1(chain.events(), Purpose::side) : 0.5f);
   const Vec3 normal =
       side.behind ? ShadingPoint(chain.point(), chain.ray().direction, chain.material()).normal : shading.normal;
-  return {chain.point(), normal, step, true, chain.passed() / side.probability};
+  return {chain.point(), normal, step, true, chain.passed() / side.probability, chain.events() > 0, side.behind};
 }
 
 }  // namespace
@@ -54,10 +54,12 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
     // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
     const float step = view.pixel_size(chain.way());
     const ShadingPoint& shading = chain.shade(step);
-    if (transmits_diffusely(chain.material())) [[unlikely]]
-      return seen_from_a_side(chain, shading, step, look);
-    if (shading.bsdf.has_diffuse())
-      return SeenPoint{chain.point(), shading.normal, step, chain.events() > 0, chain.passed()};
+    if (shading.bsdf.has_diffuse()) {
+      if (transmits_diffusely(chain.material())) [[unlikely]]
+        return seen_from_a_side(chain, shading, step, look);
+      const bool mirrored = chain.events() > 0;
+      return SeenPoint{chain.point(), shading.normal, step, mirrored, chain.passed(), mirrored};
+    }
     const std::uint32_t mirrors = chain.events();
     if (mirrors + 1 == kMostMirrors) break;
     // u = 0.5 chooses the lobe that has more than half of the light.

@@ -17,13 +17,13 @@ constexpr std::uint32_t kRouletteFrom = 3;  ///< paths of fewer bounces always s
 }  // namespace
 
 /// Russian roulette after the first bounces; `most`: the largest survival probability.
-inline bool EyeTracer::survives(EyeState& state, float most) const {
+bool EyeTracer::survives(EyeState& state, float most) const {
   if (state.bounce + 1 < kRouletteFrom) return true;
   return tempolux::survives(state.throughput, most, state.random.get1(state.bounce, Purpose::roulette));
 }
 
 /// Follows a ray to its hit.
-inline void EyeTracer::go_on(const Ray& ray, EyeState& state) const {
+void EyeTracer::go_on(const Ray& ray, EyeState& state) const {
   state.ray = ray;
   count(1, counts_.bounce, state);
   state.hit = {};
@@ -122,7 +122,7 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, EyeState& state) con
 }
 
 /// Follows effort_.onward rays from the Lambert lobe of the first matte surface, which add to the part `onward`.
-inline void EyeTracer::go_onward(const EyeVertex& at, float u_lobe, float times, const EyeState& state) const {
+void EyeTracer::go_onward(const EyeVertex& at, float u_lobe, float times, const EyeState& state) const {
   if (at.known.has(LightKind::indirect) && at.known.has(LightKind::caustic) && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
     EyeState next = state;
@@ -133,13 +133,13 @@ inline void EyeTracer::go_onward(const EyeVertex& at, float u_lobe, float times,
 }
 
 /// Adds light of a lamp or of the sky that the path meets.
-inline void EyeTracer::add_met(Rgb light, const EyeState& state) const {
+void EyeTracer::add_met(Rgb light, const EyeState& state) const {
   (*state.result)[state.path.layer()] += light;
   if (state.path.only_specular()) state.result->mirrored += float(channel_mean(light));
 }
 
 /// Applies the absorption of glass between the last vertex and a surface, and adds the surface's emission.
-inline void EyeTracer::arrive(const SurfacePoint& point, EyeState& state) const {
+void EyeTracer::arrive(const SurfacePoint& point, EyeState& state) const {
   const SceneFrame& frame = scene_.frame();
   const Vec3 wo = -state.ray.direction;
   const bool front = dot(point.normal_geometric, wo) > 0,
@@ -154,7 +154,7 @@ inline void EyeTracer::arrive(const SurfacePoint& point, EyeState& state) const 
 
 /// Continues the path from a surface. If the path forks, `state` follows one lobe, and a copy follows the other to its
 /// end. Returns false if `state` ends.
-inline bool EyeTracer::leave(const EyeVertex& at, EyeState& state) const {
+bool EyeTracer::leave(const EyeVertex& at, EyeState& state) const {
   const ShadingPoint& x = at.x;
   const bool first_matte = state.path.sharp() && x.bsdf.has_diffuse();
   float u_lobe = state.random.get1(state.bounce, Purpose::lobe), times = 1;
@@ -174,10 +174,10 @@ inline bool EyeTracer::leave(const EyeVertex& at, EyeState& state) const {
   return scatter(at, u_lobe, times, state);
 }
 
-/// The side of a surface from which the path goes on, with its lobes. If the surface transmits diffusely, one of both
-/// sides is drawn, and `behind` is true for the other side.
-inline ShadingPoint EyeTracer::shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state,
-                                     bool& behind) const {
+/// The side of a surface from which the path goes on, with its lobes. If the surface transmits diffusely, one of the
+/// two sides is drawn, and `behind` is true for the other side.
+ShadingPoint EyeTracer::shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state,
+                              bool& behind) const {
   const Vec3 wo = -state.ray.direction;
   if (!transmits_diffusely(material)) [[likely]]
     return {point, wo, material};
@@ -185,11 +185,13 @@ inline ShadingPoint EyeTracer::shade(const SurfacePoint& point, const MaterialVa
   const SideChoice side = choose_side(own.bsdf, own.wo_local, material, state.random.get1(state.bounce, Purpose::side));
   state.throughput *= 1 / side.probability;
   behind = side.behind;
+  if (behind && bounds_solid(material, point.plate))
+    state.inside.scatter(point.material, dot(point.normal_geometric, wo) > 0, true);
   return behind ? ShadingPoint(point, -wo, from_behind(material)) : own;
 }
 
 /// Adds the light at state.hit and continues the path from there. Returns false if the path ends.
-inline bool EyeTracer::step(EyeState& state) const {
+bool EyeTracer::step(EyeState& state) const {
   const SceneFrame& frame = scene_.frame();
   if (const Media* const media = frame.media.get()) [[unlikely]] {
     const Passed media_event = pass_media(*media, state);

@@ -166,6 +166,7 @@ MaterialTextures read_textures(Import& import, const tinygltf::Material& source,
 /// A primitive keeps two sets of texture coordinates. If a material reads a set beyond TEXCOORD_1, its textures number
 /// their sets 0 and 1 in the order of material_textures(), base colour first. Textures on further sets are left out.
 /// Returns the sets of the file that the material reads as 0 and 1.
+/// The direction of an anisotropy without a texture follows TEXCOORD_0, which counts as read.
 std::array<std::uint32_t, 2> number_uv_sets(Import& import, MaterialTextures& textures) {
   std::array<std::uint32_t, 2> sets{kNone, kNone};
   bool beyond = false;
@@ -174,10 +175,10 @@ std::array<std::uint32_t, 2> number_uv_sets(Import& import, MaterialTextures& te
   if (!beyond) return {0, 1};
   for (const MaterialTexture& row : material_textures()) {
     Texture& texture = textures.*row.member;
-    if (!texture) continue;
+    if (!texture && !(textures.grain && row.member == &MaterialTextures::anisotropy)) continue;
     const auto slot = std::ranges::find_if(sets, [&](std::uint32_t s) { return s == kNone || s == texture.uv_set; });
     if (slot == sets.end()) {
-      import.ignore("textures on a third set of coordinates of their material");
+      if (texture) import.ignore("textures on a third set of coordinates of their material");
       texture = {};
       continue;
     }
@@ -204,8 +205,8 @@ Material read_material(Import& import, std::size_t index, ColorFactors& emission
   if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
   MaterialTextures textures = read_textures(import, source, place);
   read_specular_glossiness(import, source, place, material, textures);
-  import.uv_sets.push_back(number_uv_sets(import, textures));
   textures.grain = source.extensions.contains("KHR_materials_anisotropy");
+  import.uv_sets.push_back(number_uv_sets(import, textures));
   if (textures.any()) material.textures = textures;
   ignore_textures(import, source, place);
   return material;

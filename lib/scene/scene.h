@@ -80,7 +80,7 @@ struct MaterialValues {
 struct Texture {
   using Wrap = TextureWrap;
   std::uint32_t image = kNone;  ///< index into Scene::images; kNone: no texture
-  std::uint32_t uv_set = 0;     ///< TEXCOORD_n of the primitive
+  std::uint32_t uv_set = 0;     ///< 0: Primitive::uvs, 1: uvs1
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool nearest = false;  ///< true: magnified texels have sharp edges; false: bilinear interpolation
   /// KHR_texture_transform: u' = m[0] u + m[1] v + m[2], v' = m[3] u + m[4] v + m[5].
@@ -107,7 +107,7 @@ struct MaterialTextures {
   Texture anisotropy;                  ///< linear: RG direction of the grain, (2 rg - 1), before rotation; B strength
   Texture diffuse_transmission;        ///< linear: A
   Texture diffuse_transmission_color;  ///< sRGB
-  /// Linear: R the film\'s share; G its thickness, from the minimum to the maximum.
+  /// Linear: R the film's share; G its thickness, from the minimum to the maximum.
   Texture iridescence, iridescence_thickness;
   float normal_scale = 1, clearcoat_normal_scale = 1;
   bool grain = false;          ///< true if the material has anisotropy, so that primitives need tangents
@@ -153,7 +153,7 @@ struct Influence {
 struct Primitive {
   std::vector<Vec3> positions;  ///< m, node space, at rest
   std::vector<Vec3> normals;    ///< unit; empty: flat shading
-  std::vector<Vec2> uvs, uvs1;  ///< TEXCOORD_0, TEXCOORD_1; empty: none
+  std::vector<Vec2> uvs, uvs1;  ///< the two sets that the material reads; empty: none
   /// COLOR_0, linear, in [0, 1]: multiplies base colour and alpha, interpolated linearly. Empty: 1.
   std::vector<std::array<float, 4>> colors;
   /// For each vertex, the direction of the normal map's x axis, and a sign: +1 if the map's y axis has the direction

@@ -24,8 +24,8 @@ inline constexpr std::size_t kSkyPlaces = 16384;
 
 /// Makes a guide from rays and light samples of places, all of which must exist. Each place sends four rays with the
 /// pdf cos / pi [1/sr] about the shading normal, and then as many by the grids that the first rays of all places have
-/// made; without a grid it sends no more. It also takes one sample of the lights inside the scene. Null if there is no
-/// environment. Same result for any number of threads.
+/// made, or by the cosine where it has no grid. If no place has a grid, there is no second pass. It also takes one
+/// sample of the lights inside the scene. Null if there is no environment. Same result for any number of threads.
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
                                           std::span<const SeenPlace> places);
 

@@ -196,11 +196,11 @@ def run(bench, name):
 
 
 def run_all(bench, names):
-    """What these canaries do with these programs; each runs once, as many at a time as there are processors."""
+    """What these canaries do with these programs; each runs once, four at a time at most."""
     known = Steps(bench.out / "steps" / "canaries.json", bench.programs_digest())
     ran = {}
     # Processes, since run() sets variables of the environment.
-    with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("fork")) as workers:
+    with ProcessPoolExecutor(min(4, os.cpu_count() or 1), multiprocessing.get_context("fork")) as workers:
         running = {name: workers.submit(run, bench, name) for name in names if name not in known.kept["found"]}
         for name in names:
             try:

@@ -3,7 +3,8 @@
 
     python3 tests/bench/thin_things.py BIN OUT [--runs 3] [--spp 512] [--scene shade]
 
-shade: a lamp inside a paper shade, an open tube, is the only light of a closed room. curtain: a cloth with a coat covers
+shade: a lamp inside a paper shade, an open tube, is the only light of a closed room. pure: the same with a shade that
+reflects nothing, as Blender's Translucent alone. curtain: a cloth with a coat covers
 most of a window of a room under a sky and a sun. leaves: forty leaves with a texture of veins stand in the sun in a room
 with an open wall; a mirror shows them. The means of the runs of both ways are compared for each object and layer, as
 layered_materials.py does; the exit status is 1 if one differs by more than 1 % of the object's light and 3 standard errors.
@@ -58,10 +59,14 @@ def walls(scene, x, y, z, open_side=None):
             scene.quad(*corners, red if name == "left" else grey, name=name)
 
 
-def shade():
+def pure():
+    return shade(1, KHR_materials_specular={"specularFactor": 0})
+
+
+def shade(share=0.5, **more):
     scene = Scene()
     walls(scene, 2, 2.4, 1.5)
-    tube(scene, (0.2, 1.2, -0.5), 0.22, 0.4, thin(scene, (0.8, 0.75, 0.6), (0.9, 0.8, 0.6), 0.5))
+    tube(scene, (0.2, 1.2, -0.5), 0.22, 0.4, thin(scene, (0.8, 0.75, 0.6), (0.9, 0.8, 0.6), share, **more))
     lamp = scene.material(0, 60, one_sided=True)
     x, y, z = 0.2, 1.35, -0.5
     scene.quad((x - 0.05, y, z - 0.05), (x + 0.05, y, z - 0.05), (x + 0.05, y, z + 0.05), (x - 0.05, y, z + 0.05), lamp)
@@ -103,11 +108,11 @@ def main():
     parser.add_argument("out", type=Path)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--spp", type=int, default=512)
-    parser.add_argument("--scene", choices=("shade", "curtain", "leaves"), action="append")
+    parser.add_argument("--scene", choices=("shade", "pure", "curtain", "leaves"), action="append")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     beyond = count = 0
-    for make in (shade, curtain, leaves):
+    for make in (shade, pure, curtain, leaves):
         if options.scene and make.__name__ not in options.scene:
             continue
         path = options.out / f"{make.__name__}.gltf"

@@ -319,7 +319,8 @@ def glazed(matte_look, mirror, share):
     front = as_tuple(times(mirror["base"], share))
     along = max(front) if mirror.get("one_for_all_angles") else share
     look["reflects"] = front, along
-    look["base"] = times(look["base"], (1 - share) / max(1 - (20 * max(front) + along) / 21, 1e-6))
+    kept = (1 - share) / max(1 - (20 * max(front) + along) / 21, 1e-6)
+    look["base"], look["passing_colour"] = times(look["base"], kept), times(look["passing_colour"], kept)
     return look
 
 
@@ -358,6 +359,21 @@ def flip(factor):
     return 1 - as_number(factor) if is_constant(factor) else Blend(factor, 1.0, 0.0)
 
 
+OF_SURFACES = ("base", "roughness", "ior", "level", "tint", "passing", "passing_colour")
+
+
+def passing_of(factor, a, b):
+    """The share of the matte part of a mixture that sends light to the other side. Glass and metal have no matte part."""
+    def matte_share(look):
+        return (1 - as_number(look["transmission"])) * (1 - as_number(look["metallic"]))
+    if not all(is_constant(x) for x in (factor, *(look[k] for look in (a, b) for k in ("transmission", "metallic", "passing")))):
+        return blend(factor, a["passing"], b["passing"])
+    share = as_number(factor)
+    matte_a, matte_b = (1 - share) * matte_share(a), share * matte_share(b)
+    whole = matte_a + matte_b
+    return (matte_a * as_number(a["passing"]) + matte_b * as_number(b["passing"])) / whole if whole > 0 else 0.0
+
+
 def blended(factor, a, b):
     look = Look(normal=a["normal"] or b["normal"])
     look.losses = a.losses + b.losses
@@ -374,14 +390,16 @@ def blended(factor, a, b):
             "one_for_all_angles",
         ):
             continue
-        if key in ("base", "roughness", "ior", "level", "tint") and weight_a == 0:
+        if key in OF_SURFACES and weight_a == 0:
             look[key] = b[key]
-        elif key in ("base", "roughness", "ior", "level", "tint") and weight_b == 0:
+        elif key in OF_SURFACES and weight_b == 0:
             look[key] = a[key]
         elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 1 and b["passing"] == 0:
             look[key] = b[key]
         elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 0 and b["passing"] == 1:
             look[key] = a[key]
+        elif key == "passing":
+            look[key] = passing_of(factor, a, b)
         elif key == "passing_colour" and 0 in (a["passing"], b["passing"]):
             look[key] = (b if a["passing"] == 0 else a)[key]
         else:
@@ -389,6 +407,7 @@ def blended(factor, a, b):
     if weight_a == 0 or weight_b == 0:       # emission beside a surface takes its share of it
         shine = factor if weight_b == 0 else flip(factor)
         look["base"] = times(look["base"], flip(shine))
+        look["passing_colour"] = times(look["passing_colour"], flip(shine))
     look["old_specular"] = bool(a.get("old_specular") and b.get("old_specular"))
     if a["strength"] == 0 and b["strength"] == 0:
         look.update(emission=BLACK, strength=0.0)

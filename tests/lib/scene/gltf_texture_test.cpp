@@ -76,7 +76,9 @@ TEST(GltfTexture, MaterialsReadAnyTwoSetsOfCoordinates) {
   const Scene three = maker.load();
   ASSERT_EQ(three.warnings.size(), 1u);
   EXPECT_CONTAINS(three.warnings[0], "textures on a third set of coordinates");
-  EXPECT_TRUE(three.materials[0].textures->base_color);
+  EXPECT_EQ(three.materials[0].textures->base_color.uv_set, 0u);
+  EXPECT_EQ(three.materials[0].textures->metallic_roughness.uv_set, 1u);
+  EXPECT_FALSE(three.materials[0].textures->emission);
 }
 
 TEST(GltfTexture, ImagesThatNoTextureNamesAreNotRead) {
