@@ -195,13 +195,22 @@ def run(bench, name):
         shutil.rmtree(folder, ignore_errors=True)
 
 
+shared = None  # the Bench of run_all(), which the processes inherit: it cannot be sent to them
+
+
+def run_shared(name):
+    return run(shared, name)
+
+
 def run_all(bench, names):
     """What these canaries do with these programs; each runs once, four at a time at most."""
     known = Steps(bench.out / "steps" / "canaries.json", bench.programs_digest())
     ran = {}
+    global shared
+    shared = bench
     # Processes, since run() sets variables of the environment.
     with ProcessPoolExecutor(min(4, os.cpu_count() or 1), multiprocessing.get_context("fork")) as workers:
-        running = {name: workers.submit(run, bench, name) for name in names if name not in known.kept["found"]}
+        running = {name: workers.submit(run_shared, name) for name in names if name not in known.kept["found"]}
         for name in names:
             try:
                 ran[name] = known(name, lambda: running[name].result())
