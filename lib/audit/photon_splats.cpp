@@ -68,16 +68,16 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   SurfacePoint point = tracer_.surface_point(hit);
   const Vec3 wo = -ray.direction;
   if (std::abs(dot(point.position - place, normal)) > kOff * distance) return std::nullopt;
-  // The photon arrived on the other side of a thin wall.
-  const bool behind = dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0;
+  // True if the photon arrived on the side of the surface that the camera does not see.
+  const bool far_side = dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0;
 
   const SceneFrame& frame = tracer_.frame();
   const Vec3 smooth = point.normal;
   RayCone cone = view_.cone();
   cone.advance(distance);
   const SurfaceMaterial material(frame, point, cone.width);
-  if (material.values().unlit || (behind && !transmits_diffusely(material))) return std::nullopt;
-  const ShadingPoint x = behind ? ShadingPoint(point, -wo, from_behind(material)) : ShadingPoint(point, wo, material);
+  if (material.values().unlit || (far_side && !transmits_diffusely(material))) return std::nullopt;
+  const ShadingPoint x = far_side ? ShadingPoint::on_far_side(point, wo, material) : ShadingPoint(point, wo, material);
   if (!x.bsdf.has_diffuse()) return std::nullopt;
   Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local) * kInvPi * rgb_of(photon.flux);
   if (wi && photon.kind == formats::PathKind::caustic)

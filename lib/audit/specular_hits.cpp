@@ -86,7 +86,7 @@ void SpecularHits::follow(const RenderScene& scene, const Ray& ray, const PixelR
       };
       add(x);
       if (transmits_diffusely(chain.material()))
-        add({chain.point(), chain.ray().direction, from_behind(chain.material())});
+        add(ShadingPoint::on_far_side(chain.point(), -chain.ray().direction, chain.material()));
     }
     if (!x.bsdf.has_specular()) return;
     const Scattered next(x, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));

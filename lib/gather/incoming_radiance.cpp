@@ -38,8 +38,7 @@ struct IncomingRadiance::Met {
   SurfacePoint hit;
   Vec3 wo;                       ///< unit, towards the start of the ray
   Vec3 geometric;                ///< geometric normal on the side of wo
-  float chance = 1;              ///< probability with which the side was drawn from which the ray goes on
-  bool behind = false;           ///< true if that is the other side; then wo is turned round
+  SideChoice side;               ///< from which the ray goes on; on the far side wo and geometric are turned round
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
   float leg = INFINITY;          ///< m: length of the path's last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
@@ -114,8 +113,7 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
 inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, std::uint64_t key, Met& met) const {
   met.leg = leg;
   met.distance = before + leg;
-  met.chance = 1;
-  met.behind = false;
+  met.side = {};
   if (transmits_diffusely(tracer_.frame().materials[met.hit.material])) [[unlikely]] {
     SurfacePoint smooth = met.hit;
     look_at(wo, met);
@@ -141,14 +139,12 @@ inline void IncomingRadiance::look_at(Vec3 wo, Met& met) const {
 /// Draws the side from which a ray goes on. smooth: the hit without its normal map.
 void IncomingRadiance::draw_side(std::uint64_t key, SurfacePoint& smooth, Met& met) const {
   const SurfaceMaterial material(tracer_.frame(), smooth);
-  const SideChoice side = choose_side(*met.bsdf, SeenSide(met.hit, met.wo).wo_local, material,
-                                      PathRandom(key, kSideNumbers).get1(0, Purpose::side));
-  met.chance = side.probability;
-  met.behind = side.behind;
-  if (!side.behind) return;
+  met.side = choose_side(*met.bsdf, SeenSide(met.hit, met.wo).wo_local, material,
+                         PathRandom(key, kSideNumbers).get1(0, Purpose::side));
+  if (!met.side.far_side) return;
   met.wo = -met.wo;
   met.geometric = -met.geometric;
-  met.bsdf = &met.textured.emplace(from_behind(material), dot(met.hit.normal_geometric, met.wo) > 0,
+  met.bsdf = &met.textured.emplace(on_far_side(material), dot(met.hit.normal_geometric, met.wo) > 0,
                                    SeenSide(met.hit, met.wo).frame, Carries::radiance);
 }
 
@@ -241,14 +237,14 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
 /// close, the ray continues, and `to.further` receives it. The other lobes are followed along one sampled direction.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
-  if (met.chance == 1 && !met.behind) [[likely]]
+  if (met.side.is_plain()) [[likely]]
     return reflected_on_side(met, point, from, depth, to);
   Further drawn = from;
-  drawn.weight *= 1 / met.chance;
-  // Bright points light the lobe that reflects. Light that the other lobe transmits is not divided.
-  if (met.behind) drawn.sampled_lobe = 0;
+  drawn.weight *= 1 / met.side.chance;
+  // Bright points light lobes that reflect. Light that is transmitted is not divided.
+  if (met.side.far_side) drawn.sampled_lobe = 0;
   if (RadianceSource* const source = to.source_of(from)) source->partial = true;
-  return reflected_on_side(met, point, drawn, depth, to) / met.chance;
+  return reflected_on_side(met, point, drawn, depth, to) / met.side.chance;
 }
 
 /// reflected() on the side from which the ray goes on.

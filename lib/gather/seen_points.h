@@ -23,12 +23,12 @@ struct SeenPoint {
   /// radiance that the camera receives.
   Rgb passed{1.0f};
   bool mirrored = false;  ///< true if the camera sees the point by mirrors or glass
-  bool far_side =
-      false;  ///< true if the side is the one that the camera sees through the surface (diffuse_transmission.h)
+  /// True if the point lies on the far side of a surface that transmits diffusely (diffuse_transmission.h).
+  bool far_side = false;
 };
 
 /// A raster position of a picture, in pixels. Where the path forks (glass, gloss, paper), `random` chooses the branch;
-/// without `random` the path takes the more probable branch.
+/// without `random` the path takes the branch of higher probability.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;

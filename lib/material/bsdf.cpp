@@ -50,7 +50,7 @@ Rgb Bsdf::reflected(int i, const Direction& d) const {
 }
 
 Rgb Bsdf::specular_albedo(Vec3 wo) const {
-  if (behind_) return Rgb(0.0f);
+  if (far_side_) return Rgb(0.0f);
   Direction d(wo);
   look_up(d);
   Rgb sum(0.0f);
@@ -74,7 +74,7 @@ float Bsdf::arrival_weight(Vec3 wi) const { return diffuse_coupling(wi) * coupli
 /// P(D): the Lambert lobe's share of the uniform light that all lobes together reflect towards wo.
 float Bsdf::diffuse_probability(const Direction& wo) const {
   if (!has_diffuse()) return 0;
-  if (lobes_ == 0 || behind_) return 1;
+  if (lobes_ == 0 || far_side_) return 1;
   const float d = channel_mean(lambert_.rho()) * wo.passed;
   float total = d;
   for (int i = 0; i < lobes_; ++i) total += channel_mean(reflected(i, wo));

@@ -59,7 +59,7 @@ namespace tempolux {
 /// The loss is at most 5 % below a smooth coat of index 1.5.
 ///
 /// KHR_materials_diffuse_transmission adds a Lambert lobe that sends light to the other side. It is a Bsdf of its own,
-/// for which MaterialValues::from_behind is set (diffuse_transmission.h): the stack weighs light by c and reflects
+/// for which MaterialValues::from_far_side is set (diffuse_transmission.h): the stack weighs light by c and reflects
 /// none.
 ///
 /// A further lobe of event S is a class with the functions that lobe.h lists, in a file of its own. Its name stands in
@@ -90,9 +90,8 @@ class Bsdf {
   /// True if the Lambert lobe reflects any light, or if the material transmits diffusely: then also where the lobe of
   /// this side is black.
   bool has_diffuse() const { return diffuse_; }
-  bool has_specular() const {
-    return lobes_ > 0 || glass_;
-  }  ///< true if there is an S lobe; on a far side it weighs light only
+  /// True if there is an S lobe. On a far side the lobe weighs light and scatters none.
+  bool has_specular() const { return lobes_ > 0 || glass_; }
   /// True if all S lobes are mirrors or smooth glass, or there is none.
   bool specular_is_delta() const { return spread_ == 0; }
   /// The share of light samples that a caller should draw on the side z < 0, from where eval_specular() transmits
@@ -172,7 +171,7 @@ class Bsdf {
   /// transmission of smooth glass and nothing else.
   bool forks() const {
     return glass_ ? glass_->share() == 1 && glass_->is_delta() && glass_->reflects()
-                  : has_diffuse() && lobes_ > 0 && !behind_;
+                  : has_diffuse() && lobes_ > 0 && !far_side_;
   }
   /// If forks(): sample() draws the Lambert lobe, or the reflection of glass, for u_lobe below this probability, else
   /// the other lobe. wo is above the surface.
@@ -222,7 +221,7 @@ class Bsdf {
   float rest_ = 1;            ///< share of the stack and the Lambert lobe: 1 - transmission (1 - metallic)
   bool has_lambert_ = false, diffuse_ = false;
   bool lit_ = true;        ///< false: the stack reflects all light
-  bool behind_ = false;    ///< MaterialValues::from_behind: the stack weighs light and reflects none
+  bool far_side_ = false;  ///< MaterialValues::from_far_side: the stack weighs light and reflects none
   bool directed_ = false;  ///< true if lobes of the stack have axes of their own
   std::optional<DielectricLobe> glass_;
 };

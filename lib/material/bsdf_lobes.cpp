@@ -2,15 +2,10 @@
 #include <cmath>
 
 #include "lib/material/bsdf.h"
+#include "lib/material/dielectric.h"
 
 namespace tempolux {
 namespace {
-
-/// Reflectance [1] at normal incidence of an interface of relative index `ior`.
-float normal_reflectance(float ior) {
-  const float r = (ior - 1) / (ior + 1);
-  return r * r;
-}
 
 /// F0 [1] of a dielectric in glTF: normal_reflectance(ior) times KHR_materials_specular's colour, at most 1, times its
 /// factor.
@@ -27,8 +22,8 @@ Rgb dielectric_f0(const MaterialValues& m) {
 Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carries carries, float plate) {
   if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
-  behind_ = material.from_behind;
-  if (!behind_ && material.transmission * (1 - metallic) > 0) {
+  far_side_ = material.from_far_side;
+  if (!far_side_ && material.transmission * (1 - metallic) > 0) {
     glass_.emplace(material, front, plate);
     rest_ = 1 - glass_->share();
     if (!glass_->is_delta()) ++spread_;
@@ -47,9 +42,9 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
   }
   if (material.diffuse_transmission > 0) [[unlikely]] {
     const float through = material.diffuse_transmission;
-    const float beside_glass = 1 - material.transmission * (1 - metallic);  // rest_, which has no glass from behind
-    lambert_.add(behind_ ? material.diffuse_transmission_color * (through * (1 - metallic) * beside_glass)
-                         : material.base_color * ((1 - metallic) * (1 - through)));
+    const float beside_glass = 1 - material.transmission * (1 - metallic);  // rest_, which is 1 on a far side
+    lambert_.add(far_side_ ? material.diffuse_transmission_color * (through * (1 - metallic) * beside_glass)
+                           : material.base_color * ((1 - metallic) * (1 - through)));
     diffuse_ = lit_ && has_lambert_;  // light from one side at least
   } else {
     lambert_.add(material.base_color * (1 - metallic));
@@ -110,7 +105,7 @@ void Bsdf::add(const Parameters&... parameters) {
   if (!lit_) return;
   Layer& layer = stack_[lobes_++];
   const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
-  if (!AnyLobe::kDelta && !behind_) ++spread_;
+  if (!AnyLobe::kDelta && !far_side_) ++spread_;
   const float rest = 1 - lobe.mean_albedo();
   if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
   else lit_ = false;

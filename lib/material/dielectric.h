@@ -22,6 +22,12 @@ inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
+/// Reflectance [1] of a boundary of relative index `index` at normal incidence.
+inline float normal_reflectance(float index) {
+  const float r = (index - 1) / (index + 1);
+  return r * r;
+}
+
 /// Snell's law: the direction on the other side of the boundary z = 0 from which refracted light reaches wo (z > 0).
 /// Unit, away from the surface, z < 0. cos_t is that of fresnel_dielectric, above 0.
 inline Vec3 refract(Vec3 wo, float eta, float cos_t) { return normalize(Vec3{-eta * wo.x, -eta * wo.y, -cos_t}); }

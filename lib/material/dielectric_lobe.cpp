@@ -20,28 +20,28 @@ DielectricLobe::DielectricLobe(const MaterialValues& material, bool front, float
   }
   pane_ = thin && !rough_;
   if (plate > 0 && !rough_) plate_ = Plate{front, transmittance(material, plate)};
-  if (material.iridescence > 0 && !rough_) [[unlikely]] {
-    const float r = (ior - 1) / (ior + 1);
-    film_.emplace(Schlick{Rgb(r * r), 1}, material.iridescence, material.iridescence_ior,
+  if (material.iridescence > 0 && !rough_) [[unlikely]]
+    film_.emplace(Schlick{Rgb(normal_reflectance(ior)), 1}, material.iridescence, material.iridescence_ior,
                   material.iridescence_thickness_maximum);
-  }
 }
 
-/// The Fresnel term of a face for cos_o > 0. cos_t: as fresnel_dielectric() sets it.
-Rgb DielectricLobe::face(float cos_o, float& cos_t) const {
+/// Reflectance [1] of one face, with its film, for light of cosine cos_o > 0. cos_t receives the cosine on the other
+/// side, as in fresnel_dielectric().
+Rgb DielectricLobe::reflectance_of_face(float cos_o, float& cos_t) const {
   const float f = fresnel_dielectric(cos_o, eta_reflected_, cos_t);
   if (!film_ || !(f < 1)) return Rgb(f);
   return film_->at(eta_reflected_ > 1 ? cos_t : cos_o);  // the cosine outside
 }
 
-/// The shares that a plate, or a boundary with a film, reflects towards cos_o > 0 and lets pass towards it.
+/// Shares of light [1] at a plate, or at a boundary with a film: the share that is reflected towards a direction of
+/// cosine cos_o > 0, and the share that is transmitted towards this direction.
 DielectricLobe::Shares DielectricLobe::shares(float cos_o, float& cos_t) const {
   if (plate_ && !plate_->outer) return {Rgb(0.0f), tint_};
-  const Rgb face_term = face(cos_o, cos_t);
-  Shares shares{face_term, Rgb(0.0f)};
+  const Rgb face = reflectance_of_face(cos_o, cos_t);
+  Shares shares{face, Rgb(0.0f)};
   if (!(cos_t > 0)) return shares;
   for (int k = 0; k < 3; ++k) {
-    const float f = face_term[k];
+    const float f = face[k];
     if (!plate_) {
       shares.passed[k] = tint_[k] * (1 - f);
       continue;

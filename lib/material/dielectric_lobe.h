@@ -60,7 +60,7 @@ class DielectricLobe {
       return r > 0 ? r / (r + max_component(passed)) : 0;
     }
   };
-  Rgb face(float cos_o, float& cos_t) const;
+  Rgb reflectance_of_face(float cos_o, float& cos_t) const;
   Shares shares(float cos_o, float& cos_t) const;
   void sample_by_channel(Vec3 wo, float u_lobe, LobeSample& s) const;
 

@@ -16,9 +16,9 @@ namespace tempolux {
 
 inline bool transmits_diffusely(const MaterialValues& m) { return m.diffuse_transmission > 0 && m.metallic < 1; }
 
-/// The material as a path sees it that goes on from the other side: only the transmitting lobe scatters light.
-inline MaterialValues from_behind(MaterialValues material) {
-  material.from_behind = true;
+/// The material for a path that goes on from the far side: its only lobe is the Lambert lobe that transmits.
+inline MaterialValues on_far_side(MaterialValues material) {
+  material.from_far_side = true;
   return material;
 }
 
@@ -31,13 +31,16 @@ inline Rgb diffuse_albedo_of_both(const MaterialValues& m) {
 
 /// The side from which a path goes on at a surface that transmits diffusely.
 struct SideChoice {
-  bool behind = false;    ///< the other side
-  float probability = 1;  ///< of this choice, by which the path's throughput is divided; above 0
+  bool far_side = false;  ///< false: the side from which the path came
+  float chance = 1;       ///< probability of this choice, above 0; the path's throughput is divided by it
+
+  /// True if there was nothing to choose: the path goes on from its own side, with its own throughput.
+  bool is_plain() const { return !far_side && chance == 1; }
 };
 
-/// Chooses a side by u in [0, 1), in proportion to the light that the lobes of each side send towards wo if light is
-/// uniform. bsdf: of the path's own side. wo: unit, in the local frame of `bsdf`; below the surface it counts as the
-/// normal.
+/// Chooses a side by u in [0, 1). The chance of a side is proportional to the light that its lobes send towards wo if
+/// light is uniform. bsdf: of the path's own side. wo: unit, in the local frame of `bsdf`; a direction below the
+/// surface counts as the normal.
 SideChoice choose_side(const Bsdf& bsdf, Vec3 wo, const MaterialValues& material, float u);
 
 }  // namespace tempolux

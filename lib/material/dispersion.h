@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
+#include "lib/core/random.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -20,11 +22,9 @@ inline float index_at(const MaterialValues& m, float wavelength_nm) {
   return std::max(1.0f, m.ior + steepness * (523655 / (wavelength_nm * wavelength_nm) - 1.5168f));
 }
 
-/// The wavelength of a path.
-///
-/// A path is white until glass with dispersion refracts it for the first time. Then the path takes one wavelength, is
-/// multiplied by the colour of the wavelength, and keeps the wavelength to its end. What the glass reflects stays
-/// white.
+/// The wavelength of a path. A path carries light of all wavelengths until a solid with dispersion refracts the path
+/// for the first time. From there to its end the path carries one wavelength, and its throughput is multiplied by
+/// `color`. A path that the solid reflects goes on with all wavelengths.
 struct HeroWavelength {
   float nm = 0;  ///< 0: none
   /// The colour, over the probability density: linear Rec. 709, at least 0. Its mean over u is 1 in each channel.
@@ -35,6 +35,17 @@ struct HeroWavelength {
 /// (tables/spectrum_integrals.h). The three channels are the CIE 1931 curves in linear Rec. 709, with 0 in place of
 /// negative values. A wavelength is drawn in proportion to their sum, so that colours differ in hue alone.
 HeroWavelength hero_wavelength(float u);
+
+/// The wavelength that a path takes if it is refracted at a surface: none without dispersion, at a plate that light
+/// passes straight (SurfacePoint::plate), and if the path has a wavelength already. random: of the path (get1).
+template <class Random>
+std::optional<HeroWavelength> draw_wavelength(const MaterialValues& material, float plate, float wavelength_nm,
+                                              const Random& random) {
+  if (!(material.dispersion > 0)) [[likely]]
+    return std::nullopt;
+  if (!disperses(material) || plate > 0 || wavelength_nm > 0) return std::nullopt;
+  return hero_wavelength(random.get1(0, Purpose::wavelength));
+}
 
 namespace spectrum_table {
 inline constexpr int kSteps = 128;

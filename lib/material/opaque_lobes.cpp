@@ -7,7 +7,6 @@
 namespace tempolux {
 namespace {
 
-float power5(float x) { return x * x * x * x * x; }
 float smooth_step(float x) {
   x = std::clamp(x, 0.0f, 1.0f);
   return x * x * (3 - 2 * x);
@@ -26,7 +25,7 @@ float multiple_share(const LobeAlbedo& r) {
 }  // namespace
 
 Rgb Schlick::at(float cos_h) const {
-  const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
+  const float k = schlick_rise(cos_h);
   return f0 * (1 - k) + Rgb(f90 * k);
 }
 

@@ -23,6 +23,12 @@ class Lambert {
   Rgb rho_{0.0f};
 };
 
+/// The share (1 - cos_h)^5 [1] of F90 - F0 that Schlick's Fresnel term adds to F0.
+inline float schlick_rise(float cos_h) {
+  const float x = std::clamp(1 - cos_h, 0.0f, 1.0f);
+  return x * x * x * x * x;
+}
+
 /// Schlick's Fresnel term, F0 + (F90 - F0) (1 - cos_h)^5 [1]. Schlick, "An Inexpensive BRDF Model for
 /// Physically-based Rendering", CGF 13(3), 1994.
 struct Schlick {

@@ -1,16 +1,13 @@
 #include "lib/material/thin_film.h"
 
 #include "lib/core/sampling.h"
+#include "lib/material/dielectric.h"
 
 namespace tempolux {
 namespace {
 
 float squared(float x) { return x * x; }
-float normal_reflectance(float index) { return squared((index - 1) / (index + 1)); }
-float schlick(float f0, float cos) {
-  const float k = std::clamp(1 - cos, 0.0f, 1.0f), k2 = k * k;
-  return f0 + (1 - f0) * (k2 * k2 * k);
-}
+float schlick(float f0, float cos) { return f0 + (1 - f0) * schlick_rise(cos); }
 
 struct Sensitivity {
   Rgb first, second;

@@ -123,9 +123,8 @@ struct Arrival {
 
 namespace {
 
-/// A surface whose Bsdf must be made at the hit: its material has textures, alpha or dispersion, transmits
-/// diffusely, or bounds a plate of glass. The
-/// constructor applies the normal map to the point.
+/// A surface whose Bsdf must be made at the hit: its material has textures, alpha or dispersion, or transmits
+/// diffusely, or the surface bounds a plate of glass. The constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
@@ -402,7 +401,7 @@ struct PhotonTracer::Meeting : Arrival {
   bool front;        ///< true if the photon came from the surface's front side
   float chance = 1;  ///< probability with which the side was drawn from which the photon goes on
   /// The wavelength that the photon takes if the surface refracts it; null: it takes none.
-  const HeroWavelength* drawn = nullptr;
+  const HeroWavelength* hero = nullptr;
 };
 
 /// Processes the arrival of a photon at a surface. Returns false if its path ends there.
@@ -411,13 +410,11 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   const Vec3 travel = path.ray.direction;
   const bool front = dot(point.normal_geometric, travel) < 0;
   if (varies_[point.material] || point.plate > 0) [[unlikely]] {
-    HeroWavelength hero{path.wavelength};
-    const bool draws =
-        disperses(tracer_.frame().materials[point.material]) && !(path.wavelength > 0 || point.plate > 0);
-    if (draws) hero = hero_wavelength(path.random.get1(0, Purpose::wavelength));
-    const Textured textured(tracer_.frame(), point, travel, hero.nm);
+    const std::optional<HeroWavelength> hero =
+        draw_wavelength(tracer_.frame().materials[point.material], point.plate, path.wavelength, path.random);
+    const Textured textured(tracer_.frame(), point, travel, hero ? hero->nm : path.wavelength);
     Meeting at{textured.arrival, point, distance, textured.bsdf, textured.coverage, textured.smooth, front};
-    if (draws) at.drawn = &hero;
+    if (hero) at.hero = &*hero;
     const Rgb flux = arrive(path, at, draw.bounce, batch);
     if (transmits_diffusely(textured.material)) [[unlikely]]
       return scatter_to_a_side(path, at, textured.material, flux, draw, batch);
@@ -427,16 +424,16 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_from(path, at, arrive(path, at, draw.bounce, batch), draw, batch);
 }
 
-/// Scatters a photon at a surface that transmits diffusely. The photon goes on from one of the two sides, which is
-/// drawn. On the other side it scatters as if it had come from there, against its direction (diffuse_transmission.h).
+/// Scatters a photon at a surface that transmits diffusely. Draws the side from which the photon goes on. On the far
+/// side the photon scatters as if it had come from there, against its direction (diffuse_transmission.h).
 bool PhotonTracer::scatter_to_a_side(Path& path, Meeting& at, const MaterialValues& material, Rgb flux,
                                      const Draw& draw, PhotonBatch& batch) const {
   const SideChoice side = choose_side(at.bsdf, at.wi_local, material, path.random.get1(draw.bounce, Purpose::side));
-  at.chance = side.probability;
-  if (!side.behind) return scatter_from(path, at, flux, draw, batch);
+  at.chance = side.chance;
+  if (!side.far_side) return scatter_from(path, at, flux, draw, batch);
   if (bounds_solid_at(at.point)) path.inside.scatter(at.point.material, at.front, true);
   const Arrival arrival(at.point, at.wi);
-  const Bsdf through(from_behind(material), !at.front, arrival.frame, Carries::flux);
+  const Bsdf through(on_far_side(material), !at.front, arrival.frame, Carries::flux);
   return scatter_from(path, {arrival, at.point, at.distance, through, at.coverage, at.smooth, !at.front, at.chance},
                       flux, draw, batch);
 }
@@ -523,8 +520,10 @@ PhotonTracer::Event PhotonTracer::event_at(const Path& path, const Meeting& at, 
     }
   }
   if (ways > 1) next.weight *= float(ways);
-  if (next.transmitted && at.drawn) [[unlikely]]
-    next.weight *= at.drawn->color;
+  if (next.transmitted && at.hero) [[unlikely]]
+    next.weight *= at.hero->color;
+  if (at.chance != 1) [[unlikely]]
+    next.weight *= 1 / at.chance;
   return event;
 }
 
@@ -546,7 +545,7 @@ bool PhotonTracer::scatter_from(Path& path, const Meeting& at, Rgb flux, const D
   const PathRandom& random = path.random;
   const auto [next, travel, aimed] = event_at(path, at, draw);
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
-  const Rgb reflected = at.chance == 1 ? flux * next.weight : flux * next.weight / at.chance;
+  const Rgb reflected = flux * next.weight;
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool first_event = !path.diffuse_seen && !path.specular_seen && !next.straight;
@@ -555,8 +554,8 @@ bool PhotonTracer::scatter_from(Path& path, const Meeting& at, Rgb flux, const D
   // `survival` leaves out the factor `aimed`: it depends on the surface alone, so aimed photons have less flux.
   path.flux = reflected * (survives ? aimed / survival : 0);
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
-  if (next.transmitted && at.drawn) [[unlikely]]
-    path.wavelength = at.drawn->nm;
+  if (next.transmitted && at.hero) [[unlikely]]
+    path.wavelength = at.hero->nm;
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
   if (bounds_solid_at(point) && !next.diffuse) {

@@ -45,7 +45,7 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   const Vec3 normal = seen->surface.normal_geometric;
   const bool front = dot(normal, seen->normal) > 0;
   const SurfaceMaterial read(scene.frame(), seen->surface, seen->footprint);
-  const MaterialValues material = seen->far_side ? from_behind(read) : read.values();
+  const MaterialValues material = seen->far_side ? on_far_side(read) : read.values();
   const Bsdf bsdf(material, front, Frame(seen->normal));
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
   const FootprintLight light =

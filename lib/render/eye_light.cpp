@@ -43,7 +43,7 @@ void EyeTracer::add_known_light(EyeVertex& at, Vec3 smooth, const EyeState& stat
   Layers& result = *state.result;
   const StoredAt stored_at(scene_, x);
   const float u = state.random.get1(state.bounce, Purpose::gather);
-  if (state.known.has(LightKind::bright) && !state.specular && !at.behind)
+  if (state.known.has(LightKind::bright) && !state.specular && !at.far_side)
     at.remaining_share = known.remaining_share(*stored_at.surface, stored_at.geometric, state.distance, u);
   // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local) * (kInvPi * at.remaining_share);
@@ -124,8 +124,8 @@ void EyeTracer::sample_light(const EyeVertex& at, const EyeState& state, const P
   const Vec3 wi = from.w;
   Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
   Rgb glossy = has_specular ? x.eval_specular(from) : Rgb(0.0f);
-  if (behind && at.drawn) [[unlikely]]
-    glossy *= at.drawn->color;
+  if (behind && at.hero) [[unlikely]]
+    glossy *= at.hero->color;
   if (!light.only_sampled) {
     const float pdf = light.pdf_solid_angle * share;
     if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));

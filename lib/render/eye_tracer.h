@@ -61,13 +61,13 @@ struct EyeVertex {
   const SurfaceMaterial& material;
   /// The wavelength that the path takes if the surface refracts it; null: the surface has no dispersion, or the path
   /// has its wavelength already.
-  const HeroWavelength* drawn = nullptr;
+  const HeroWavelength* hero = nullptr;
   LightKinds known{};         ///< light that was added
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
-  /// True if the path goes on from the other side of a surface that transmits diffusely. Bright points and spots light
-  /// the lobe that reflects; light that this lobe transmits is not divided.
-  bool behind = false;
+  /// True if the path goes on from the far side of a surface that transmits diffusely. Bright points and spots light
+  /// lobes that reflect; light that is transmitted is not divided.
+  bool far_side = false;
   /// Length [m] of the leg to this vertex times EyeState::divided. If it is above 0, the light of lamps close to this
   /// vertex is divided (BrightPoints).
   float divided_leg = 0;
@@ -110,7 +110,7 @@ class EyeTracer {
   }
   inline void go_on(const Ray& ray, EyeState& state) const;
   inline ShadingPoint shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state,
-                            bool& behind) const;
+                            bool& far_side) const;
   bool samples_diffuse(const EyeVertex& at) const {
     return !at.known.has(LightKind::direct) && at.x.bsdf.has_diffuse();
   }

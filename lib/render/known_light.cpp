@@ -41,9 +41,8 @@ namespace {
 SeenPoint seen_from_a_side(SpecularChain& chain, const ShadingPoint& shading, float step, const Look& look) {
   const SideChoice side = choose_side(shading.bsdf, shading.wo_local, chain.material(),
                                       look.random ? look.random->get1(chain.events(), Purpose::side) : 0.5f);
-  const Vec3 normal =
-      side.behind ? ShadingPoint(chain.point(), chain.ray().direction, chain.material()).normal : shading.normal;
-  return {chain.point(), normal, step, true, chain.passed() / side.probability, chain.events() > 0, side.behind};
+  const Vec3 normal = side.far_side ? SeenSide(chain.point(), chain.ray().direction).normal : shading.normal;
+  return {chain.point(), normal, step, true, chain.passed() / side.chance, chain.events() > 0, side.far_side};
 }
 
 }  // namespace

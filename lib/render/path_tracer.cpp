@@ -47,8 +47,8 @@ bool EyeTracer::scatter(const EyeVertex& at, float u_lobe, float times, EyeState
     go_on(spawn_ray(x.surface, state.ray.direction), state);
     return true;
   }
-  if (next.transmitted && at.drawn) [[unlikely]]
-    state.throughput *= at.drawn->color, state.wavelength = at.drawn->nm;
+  if (next.transmitted && at.hero) [[unlikely]]
+    state.throughput *= at.hero->color, state.wavelength = at.hero->nm;
   state.path.scatter(next.diffuse);
   if (next.diffuse) {
     state.throughput *= at.remaining_share;
@@ -175,19 +175,20 @@ bool EyeTracer::leave(const EyeVertex& at, EyeState& state) const {
 }
 
 /// The side of a surface from which the path goes on, with its lobes. If the surface transmits diffusely, one of the
-/// two sides is drawn, and `behind` is true for the other side.
+/// two sides is drawn; far_side is true for the side from which the path did not come.
 ShadingPoint EyeTracer::shade(const SurfacePoint& point, const MaterialValues& material, EyeState& state,
-                              bool& behind) const {
+                              bool& far_side) const {
   const Vec3 wo = -state.ray.direction;
   if (!transmits_diffusely(material)) [[likely]]
     return {point, wo, material};
   const ShadingPoint own(point, wo, material);
   const SideChoice side = choose_side(own.bsdf, own.wo_local, material, state.random.get1(state.bounce, Purpose::side));
-  state.throughput *= 1 / side.probability;
-  behind = side.behind;
-  if (behind && bounds_solid(material, point.plate))
+  state.throughput *= 1 / side.chance;
+  far_side = side.far_side;
+  if (!far_side) return own;
+  if (bounds_solid(material, point.plate))
     state.inside.scatter(point.material, dot(point.normal_geometric, wo) > 0, true);
-  return behind ? ShadingPoint(point, -wo, from_behind(material)) : own;
+  return ShadingPoint::on_far_side(point, wo, material);
 }
 
 /// Adds the light at state.hit and continues the path from there. Returns false if the path ends.
@@ -212,23 +213,17 @@ bool EyeTracer::step(EyeState& state) const {
   if (only_specular && state.known.has(LightKind::caustic) && !scene_.tracer.may_pass(state.hit)) return false;
 
   const Vec3 smooth = point.normal;
-  float wavelength = state.wavelength;
-  std::optional<HeroWavelength> hero;
-  const HeroWavelength* drawn = nullptr;
-  if (frame.materials[point.material].dispersion > 0) [[unlikely]]
-    if (disperses(frame.materials[point.material]) && !(wavelength > 0 || point.plate > 0)) {
-      drawn = &hero.emplace(hero_wavelength(state.random.get1(0, Purpose::wavelength)));
-      wavelength = drawn->nm;
-    }
-  const SurfaceMaterial material(frame, point, state.cone.width, wavelength);
+  const std::optional<HeroWavelength> hero =
+      draw_wavelength(frame.materials[point.material], point.plate, state.wavelength, state.random);
+  const SurfaceMaterial material(frame, point, state.cone.width, hero ? hero->nm : state.wavelength);
   if (material.values().unlit) [[unlikely]] {
     if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
-  bool behind = false;
-  const ShadingPoint x = shade(point, material, state, behind);
-  EyeVertex at{x, material, drawn};
-  at.behind = behind;
+  bool far_side = false;
+  const ShadingPoint x = shade(point, material, state, far_side);
+  EyeVertex at{x, material, hero ? &*hero : nullptr};
+  at.far_side = far_side;
   // A path that entered a plate has met a matte or rough surface inside, such as a frame. Light samples reach this
   // surface straight and without absorption, so the path forgets the plate's glass.
   if (state.plate != kNone && (x.bsdf.has_diffuse() || !x.bsdf.specular_is_delta())) [[unlikely]]
@@ -239,7 +234,7 @@ bool EyeTracer::step(EyeState& state) const {
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
     at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   choose_spots(at, state);
-  if (state.divided > 0 && x.bsdf.has_diffuse() && !behind)
+  if (state.divided > 0 && x.bsdf.has_diffuse() && !far_side)
     at.divided_leg = state.divided * length(point.position - state.last.position);
   add_light(at, state);
   return !(at.known.has(LightKind::direct) && !x.bsdf.has_specular()) && leave(at, state);

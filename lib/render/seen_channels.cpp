@@ -54,7 +54,7 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
     shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(wo) : Rgb(mirrored ? 0.0f : 1.0f);
     if (mirrored) shown.albedo += shading.bsdf.diffuse_reflectance(wo);
     if (mirrored && transmits_diffusely(chain.material()))
-      shown.albedo += Bsdf(from_behind(chain.material())).diffuse_reflectance(wo);
+      shown.albedo += Bsdf(on_far_side(chain.material())).diffuse_reflectance(wo);
     const std::optional<Scattered> next = chain.events() < kMostMirrors ? sharp_way(shading) : std::nullopt;
     if (!next) return shown;
     chain.go_on(*next);

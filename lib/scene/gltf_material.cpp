@@ -163,10 +163,10 @@ MaterialTextures read_textures(Import& import, const tinygltf::Material& source,
   return textures;
 }
 
-/// A primitive keeps two sets of texture coordinates. If a material reads a set beyond TEXCOORD_1, its textures number
-/// their sets 0 and 1 in the order of material_textures(), base colour first. Textures on further sets are left out.
-/// Returns the sets of the file that the material reads as 0 and 1.
-/// The direction of an anisotropy without a texture follows TEXCOORD_0, which counts as read.
+/// Decides which two sets of texture coordinates, TEXCOORD_n, the primitives of a material keep. These are 0 and 1
+/// unless a texture reads a further set. Then they are the first two sets that are read in the order of
+/// material_textures(), base colour first: the textures get the numbers 0 and 1 in place of the sets' own, and textures
+/// on a third set are left out. An anisotropy without a texture reads TEXCOORD_0 for its direction. Returns the sets.
 std::array<std::uint32_t, 2> number_uv_sets(Import& import, MaterialTextures& textures) {
   std::array<std::uint32_t, 2> sets{kNone, kNone};
   bool beyond = false;

@@ -96,10 +96,10 @@ constexpr std::array kTextures{
                                 clearcoat, clearcoat_roughness, iridescence, iridescence_ior,
                                 iridescence_thickness_minimum, iridescence_thickness_maximum, sheen_color,
                                 sheen_roughness, anisotropy, anisotropy_rotation, diffuse_transmission,
-                                diffuse_transmission_color, axes, from_behind] = values;
+                                diffuse_transmission_color, axes, from_far_side] = values;
   return 28;
 };
-// Besides: alpha cutoff, the second factor of the emission. axes and from_behind are of a hit, not of the file.
+// Besides: alpha cutoff, the second factor of the emission. axes and from_far_side are of a hit, not of the file.
 static_assert(kProperties.size() == 28 + 2 - 2);
 [[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
   [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, specular,

@@ -64,12 +64,12 @@ struct MaterialValues {
   float sheen_roughness = 0;      ///< perceptual, [0, 1]
   float anisotropy = 0;           ///< KHR_materials_anisotropy: strength, [0, 1]
   float anisotropy_rotation = 0;  ///< from the surface's tangent, counter-clockwise
-  /// KHR_materials_diffuse_transmission: replaces this share of the reflecting Lambert lobe by one that sends light to
-  /// the other side (diffuse_transmission.h), [0, 1].
+  /// KHR_materials_diffuse_transmission: share of the light below gloss and coats that leaves the surface on its far
+  /// side (lib/material/diffuse_transmission.h), [0, 1]. The rest is reflected in base_color.
   float diffuse_transmission = 0;
-  Rgb diffuse_transmission_color{1.0f};  ///< colour of that lobe, [0, 1]
+  Rgb diffuse_transmission_color{1.0f};  ///< colour of the light that leaves on the far side, [0, 1]
   SurfaceAxes axes;                      ///< at a hit; SurfaceMaterial sets them
-  bool from_behind = false;              ///< at a hit: the path sees only the lobe of diffuse_transmission
+  bool from_far_side = false;            ///< at a hit: the path goes on from the far side
 
   /// True if the material emits light where its texture is not black.
   bool emissive() const { return max_component(emission) > 0; }

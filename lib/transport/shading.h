@@ -37,6 +37,11 @@ struct ShadingPoint : SeenSide {
         bsdf(material, dot(point.normal_geometric, wo) > 0, frame, Carries::radiance, point.plate),
         eye(bsdf.along(wo_local)) {}
 
+  /// The far side of a surface that transmits diffusely, for the same wo (diffuse_transmission.h).
+  static ShadingPoint on_far_side(const SurfacePoint& point, Vec3 wo, const MaterialValues& material) {
+    return {point, -wo, tempolux::on_far_side(material)};
+  }
+
   /// f_S [1/sr], as above.
   Rgb eval_specular(const Bsdf::Direction& wi) const { return tempolux::eval_specular(bsdf, frame, wi, eye); }
   float gloss_density(Vec3 wi) const { return tempolux::gloss_density(bsdf, frame, wi, eye); }

@@ -99,6 +99,20 @@ def ball(scene, name, centre, radius, material, rings=24, sectors=48):
     scene.mesh(positions, triangles, material, normals, uvs, name=name)
 
 
+def walls(scene, x, y, z, material, open_side=None, **others):
+    """A room of 2x by y by 2z m whose faces look inwards. open_side: the wall that is left out; others: materials of
+    walls that differ, by their names."""
+    faces = {"floor": ((-x, 0, z), (x, 0, z), (x, 0, -z), (-x, 0, -z)),
+             "ceiling": ((-x, y, -z), (x, y, -z), (x, y, z), (-x, y, z)),
+             "back": ((-x, 0, -z), (x, 0, -z), (x, y, -z), (-x, y, -z)),
+             "front": ((x, 0, z), (-x, 0, z), (-x, y, z), (x, y, z)),
+             "left": ((-x, 0, z), (-x, 0, -z), (-x, y, -z), (-x, y, z)),
+             "right": ((x, 0, -z), (x, 0, z), (x, y, z), (x, y, -z))}
+    for name, corners in faces.items():
+        if name != open_side:
+            scene.quad(*corners, others.get(name, material), name=name)
+
+
 def room(path, seed, options):
     rng, scene, others = random.Random(seed), Scene(), random.Random(f"films and glass {seed}")
     films = others if options.films else None
@@ -106,12 +120,7 @@ def room(path, seed, options):
     scene._append("textures", {"source": 0})
     grey, red, blue = (scene.material(c, one_sided=True) for c in (0.6, (0.7, 0.3, 0.2), (0.2, 0.4, 0.7)))
     x, y, z = 2, 2, 1.5
-    scene.quad((-x, 0, z), (x, 0, z), (x, 0, -z), (-x, 0, -z), grey, name="floor")
-    scene.quad((-x, y, -z), (x, y, -z), (x, y, z), (-x, y, z), grey, name="ceiling")
-    scene.quad((-x, 0, -z), (x, 0, -z), (x, y, -z), (-x, y, -z), grey, name="back")
-    scene.quad((x, 0, z), (-x, 0, z), (-x, y, z), (x, y, z), grey, name="front")
-    scene.quad((-x, 0, z), (-x, 0, -z), (-x, y, -z), (-x, y, z), red, name="left")
-    scene.quad((x, 0, -z), (x, 0, z), (x, y, z), (x, y, -z), blue, name="right")
+    walls(scene, x, y, z, grey, left=red, right=blue)
     lamp, y = scene.material(0, 10, one_sided=True), y - 0.01
     scene.quad((-0.5, y, -0.4), (0.5, y, -0.4), (0.5, y, 0.4), (-0.5, y, 0.4), lamp, name="lamp")
     for i in range(8):

@@ -16,7 +16,7 @@ import random
 import sys
 from pathlib import Path
 
-from layered_materials import differences, png, render  # adds tests/support to the path
+from layered_materials import differences, png, render, walls  # adds tests/support to the path
 from open_scenes import Scene, textured_quad
 
 THIN = "KHR_materials_diffuse_transmission"
@@ -45,18 +45,9 @@ def tube(scene, centre, radius, height, material, sides=24):
     scene.mesh(positions, triangles, material, name="shade")
 
 
-def walls(scene, x, y, z, open_side=None):
-    """A room of 2x by y by 2z m whose faces look inwards. open_side: the wall that is left out."""
+def room(scene, open_side=None):
     grey, red = scene.material(0.6, one_sided=True), scene.material((0.65, 0.3, 0.25), one_sided=True)
-    faces = {"floor": ((-x, 0, z), (x, 0, z), (x, 0, -z), (-x, 0, -z)),
-             "ceiling": ((-x, y, -z), (x, y, -z), (x, y, z), (-x, y, z)),
-             "back": ((-x, 0, -z), (x, 0, -z), (x, y, -z), (-x, y, -z)),
-             "front": ((x, 0, z), (-x, 0, z), (-x, y, z), (x, y, z)),
-             "left": ((-x, 0, z), (-x, 0, -z), (-x, y, -z), (-x, y, z)),
-             "right": ((x, 0, -z), (x, 0, z), (x, y, z), (x, y, -z))}
-    for name, corners in faces.items():
-        if name != open_side:
-            scene.quad(*corners, red if name == "left" else grey, name=name)
+    walls(scene, 2, 2.4, 1.5, grey, open_side, left=red)
 
 
 def pure():
@@ -65,7 +56,7 @@ def pure():
 
 def shade(share=0.5, **more):
     scene = Scene()
-    walls(scene, 2, 2.4, 1.5)
+    room(scene)
     tube(scene, (0.2, 1.2, -0.5), 0.22, 0.4, thin(scene, (0.8, 0.75, 0.6), (0.9, 0.8, 0.6), share, **more))
     lamp = scene.material(0, 60, one_sided=True)
     x, y, z = 0.2, 1.35, -0.5
@@ -76,7 +67,7 @@ def shade(share=0.5, **more):
 
 def curtain():
     scene = Scene()
-    walls(scene, 2, 2.4, 1.5, open_side="right")
+    room(scene, "right")
     cloth = thin(scene, (0.7, 0.7, 0.75), (0.5, 0.6, 0.8), 0.6, KHR_materials_clearcoat={"clearcoatFactor": 0.7})
     scene.quad((1.98, 0.1, 1.4), (1.98, 0.1, -1.2), (1.98, 2.3, -1.2), (1.98, 2.3, 1.4), cloth, name="curtain")
     scene.sun((-0.8, -0.5, -0.2), (6, 5.5, 5))
@@ -86,7 +77,7 @@ def curtain():
 
 def leaves():
     scene, rng = Scene(), random.Random(7)
-    walls(scene, 2, 2.4, 1.5, open_side="right")
+    room(scene, "right")
     image = png(32, lambda x, y: [90, 200, 60] if (x + y) % 8 else [200, 230, 150])
     scene._append("images", {"uri": "data:image/png;base64," + base64.b64encode(image).decode()})
     scene._append("textures", {"source": 0})

@@ -97,4 +97,19 @@ inline void expect_samples_follow_pdf(const Bsdf& bsdf, Vec3 wo, const std::stri
   expect_samples_follow_pdf(bsdf, wo, what, {}, [](const Bsdf::Sample&) {});
 }
 
+/// Expects f(a, b) = f(b, a) of both events, for 20 pairs of directions that follow from `seed`.
+inline void expect_reciprocal(const Bsdf& bsdf, std::uint32_t seed) {
+  const PathRandom random(1, seed);
+  for (std::uint32_t j = 0; j < 20; ++j) {
+    const Vec3 a = sample_hemisphere_cos(random.get2(j, Purpose::test, 1));
+    const Vec3 b = sample_hemisphere_cos(random.get2(j, Purpose::test, 2));
+    const Rgb specular = bsdf.eval_specular(a, b), turned = bsdf.eval_specular(b, a);
+    const Rgb diffuse = bsdf.eval_diffuse(a, b), diffuse_turned = bsdf.eval_diffuse(b, a);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(specular[c], turned[c], 1e-4f * specular[c] + 1e-8f) << seed;
+      EXPECT_NEAR(diffuse[c], diffuse_turned[c], 1e-5f) << seed;
+    }
+  }
+}
+
 }  // namespace tempolux::test

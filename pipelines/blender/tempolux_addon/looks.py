@@ -3,6 +3,9 @@ from .colour import rec709
 from .values import (Blend, Source, as_number, as_tuple, blend, follow, is_constant, pick, plain, resolve, times)
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+# Values of a look that blended() does not mix, and those of the light that a look reflects.
+NOT_BLENDED = ("normal", "displacement", "emission", "strength", "through", "old_specular", "reflects", "one_for_all_angles")
+REFLECTED = ("base", "roughness", "ior", "tint")
 
 
 class Look(dict):
@@ -359,14 +362,12 @@ def flip(factor):
     return 1 - as_number(factor) if is_constant(factor) else Blend(factor, 1.0, 0.0)
 
 
-OF_SURFACES = ("base", "roughness", "ior", "level", "tint", "passing", "passing_colour")
-
-
 def passing_of(factor, a, b):
     """The share of the matte part of a mixture that sends light to the other side. Glass and metal have no matte part."""
     def matte_share(look):
         return (1 - as_number(look["transmission"])) * (1 - as_number(look["metallic"]))
-    if not all(is_constant(x) for x in (factor, *(look[k] for look in (a, b) for k in ("transmission", "metallic", "passing")))):
+    values = [look[key] for look in (a, b) for key in ("transmission", "metallic", "passing")]
+    if not all(is_constant(value) for value in (factor, *values)):
         return blend(factor, a["passing"], b["passing"])
     share = as_number(factor)
     matte_a, matte_b = (1 - share) * matte_share(a), share * matte_share(b)
@@ -378,26 +379,15 @@ def blended(factor, a, b):
     look = Look(normal=a["normal"] or b["normal"])
     look.losses = a.losses + b.losses
     weight_a, weight_b = weight_of(a), weight_of(b)
+    surface = b if weight_a == 0 else a if weight_b == 0 else None
+    reflecting = b if (a["passing"], b["passing"]) == (1, 0) else a if (a["passing"], b["passing"]) == (0, 1) else None
     for key in set(a) | set(b):
-        if key in (
-            "normal",
-            "displacement",
-            "emission",
-            "strength",
-            "through",
-            "old_specular",
-            "reflects",
-            "one_for_all_angles",
-        ):
+        if key in NOT_BLENDED:
             continue
-        if key in OF_SURFACES and weight_a == 0:
-            look[key] = b[key]
-        elif key in OF_SURFACES and weight_b == 0:
-            look[key] = a[key]
-        elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 1 and b["passing"] == 0:
-            look[key] = b[key]
-        elif key in ("base", "roughness", "ior", "tint") and a["passing"] == 0 and b["passing"] == 1:
-            look[key] = a[key]
+        if surface is not None and key in (*REFLECTED, "level", "passing", "passing_colour"):
+            look[key] = surface[key]
+        elif reflecting is not None and key in REFLECTED:
+            look[key] = reflecting[key]
         elif key == "passing":
             look[key] = passing_of(factor, a, b)
         elif key == "passing_colour" and 0 in (a["passing"], b["passing"]):

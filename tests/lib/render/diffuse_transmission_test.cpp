@@ -8,7 +8,7 @@
 #include "lib/material/diffuse_transmission.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
-#include "tests/support/chain.h"
+#include "tests/support/cut_room.h"
 #include "tests/support/frames.h"
 #include "tests/support/layers.h"
 #include "tests/support/materials.h"
@@ -18,6 +18,7 @@ namespace tempolux {
 namespace {
 
 using test::Chain;
+using test::CutRoom;
 using test::HandMadeScene;
 using test::matte;
 using test::Mean;
@@ -48,21 +49,21 @@ Rgb through() { return kThrough * kShare; }
 /// that leaves out the coat.
 TEST(DiffuseTransmission, LayersAndBothLobesShareTheLight) {
   for (const bool layered : {false, true}) {
-    const Bsdf own(paper(layered)), behind(from_behind(paper(layered)));
-    EXPECT_TRUE(is_black(behind.specular_albedo(test::direction(0.7f, 1))));
-    EXPECT_TRUE(behind.specular_is_delta());
+    const Bsdf own(paper(layered)), far_side(on_far_side(paper(layered)));
+    EXPECT_TRUE(is_black(far_side.specular_albedo(test::direction(0.7f, 1))));
+    EXPECT_TRUE(far_side.specular_is_delta());
     for (const float cosine : {1.0f, 0.6f, 0.2f}) {
       const Vec3 wo = test::direction(cosine, 0.4f);
       const Rgb above = own.specular_albedo(wo);
       Rgbd sampled(0.0);
       constexpr std::uint32_t kCount = 1 << 14;
       for (std::uint32_t i = 0; i < kCount; ++i)
-        sampled += Rgbd(behind.sample(wo, sobol_owen_1d(i, 3), sobol_owen_2d(i, 5)).weight) / double(kCount);
+        sampled += Rgbd(far_side.sample(wo, sobol_owen_1d(i, 3), sobol_owen_2d(i, 5)).weight) / double(kCount);
       for (int k = 0; k < 3; ++k) {
         const double rest = 1 - double(max_component(above));
-        EXPECT_NEAR(own.diffuse_reflectance(wo)[k] + behind.diffuse_reflectance(wo)[k],
+        EXPECT_NEAR(own.diffuse_reflectance(wo)[k] + far_side.diffuse_reflectance(wo)[k],
                     double(reflected()[k] + through()[k]) * rest, layered ? 0.02 : 1e-6);
-        EXPECT_NEAR(sampled[k], double(behind.diffuse_reflectance(wo)[k]), layered ? 0.01 : 1e-6);
+        EXPECT_NEAR(sampled[k], double(far_side.diffuse_reflectance(wo)[k]), layered ? 0.01 : 1e-6);
       }
     }
   }
@@ -71,11 +72,11 @@ TEST(DiffuseTransmission, LayersAndBothLobesShareTheLight) {
 /// f(wi, wo) does not change if light and viewer change places: the viewer is then on the other side, from where both
 /// directions are turned round.
 TEST(DiffuseTransmission, IsReciprocal) {
-  const Bsdf behind(from_behind(paper(true)));
+  const Bsdf far_side(on_far_side(paper(true)));
   for (std::uint32_t i = 0; i < 100; ++i) {
     const Vec2 u = sobol_owen_2d(i, 9);
     const Vec3 a = test::direction(0.01f + 0.99f * u.x, 1), b = test::direction(0.01f + 0.99f * u.y, 4);
-    EXPECT_NEAR(behind.eval_diffuse(a, b).g, behind.eval_diffuse(b, a).g, 1e-6f);
+    EXPECT_NEAR(far_side.eval_diffuse(a, b).g, far_side.eval_diffuse(b, a).g, 1e-6f);
   }
 }
 
@@ -133,74 +134,26 @@ TEST(DiffuseTransmission, PhotonsPass) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(flux[k] / (3 * 4 * double(through()[k])), 1, 4 / std::sqrt(count)) << k;
 }
 
-/// A room of 4 m with walls of reflectance one half, cut by white paper that absorbs nothing. One end wall glows.
-struct CutRoom {
-  static constexpr double kArea = 2 * 4 + 4 * 8, kRho = 0.5, kFlux = M_PI * 4;  // m^2, 1, W
-  HandMadeScene scene;
-  explicit CutRoom(float share) {
-    const Vec3 l{-2, -1, -1}, u{2, 1, 1};
-    const auto wall = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d, float emission) {
-      scene.add_quad(a, b, c, d, matte(Rgb(float(kRho)), Rgb(emission)));
-    };
-    wall({l.x, l.y, l.z}, {l.x, u.y, l.z}, {l.x, u.y, u.z}, {l.x, l.y, u.z}, 1);
-    wall({u.x, l.y, l.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {u.x, u.y, l.z}, 0);
-    wall({l.x, l.y, l.z}, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, l.y, l.z}, 0);
-    wall({l.x, u.y, l.z}, {u.x, u.y, l.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}, 0);
-    wall({l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, 0);
-    wall({l.x, l.y, u.z}, {l.x, u.y, u.z}, {u.x, u.y, u.z}, {u.x, l.y, u.z}, 0);
-    Material white = matte(Rgb(1.0f));
-    white.diffuse_transmission = share;
-    white.double_sided = true;
-    scene.add_quad({0, l.y, l.z}, {0, u.y, l.z}, {0, u.y, u.z}, {0, l.y, u.z}, white);
-  }
-};
-
-/// Irradiance of the walls [W/m^2] by all light, as means over all walls, seen from just above.
-double on_walls(const Chain& chain, const KnownLight* known, std::uint32_t count) {
-  const test::AreaSampler area(chain.frame);
-  const double share = CutRoom::kArea / area.area();  // the paper is sampled last
-  double mean = 0;
-  RayCounts counts;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Vec3 p, n;
-    area.sample((float(i) + 0.5f) / float(count) * float(share), sobol_owen_2d(i, 5), p, n);
-    const Layers seen = trace_eye_path({chain.tracer, chain.lights}, {p + n * 0.01f, -n, 0, INFINITY},
-                                       PixelRandom(3, i, 0), known, counts);
-    mean += double((seen[Layer::direct] + seen[Layer::indirect]).g) / count;
-  }
-  return mean * M_PI / CutRoom::kRho;
-}
-
-/// Light that the walls receive by gather rays, without direct light.
-double gathered(const Chain& chain, const FinalGather& gather) {
-  const test::AreaSampler area(chain.frame);
-  GatherCounts counts;
-  Mean mean;
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    Vec3 p, n;
-    area.sample((float(i) + 0.5f) / 2000 * float(CutRoom::kArea / area.area()), sobol_owen_2d(i, 5), p, n);
-    if (const auto place = chain.surface_at(p, n, 0.01f))
-      mean.add(double(gather.gather(place->first, n, counts).irradiance.g));
-  }
-  return mean.mean();
-}
-
 /// The paper keeps all light in the room, so the walls receive F / (S (1 - rho)) in the mean: by paths, by points, and
 /// by gather rays, whose part is what remains without direct light. Tolerances: the paths' noise is .4 %, that of
 /// 400000 photons and 64 rays .5 %. Seen to fail by 20 % if gather rays take the paper for a wall that only reflects.
 TEST(DiffuseTransmission, NoLightIsCountedTwiceOrLost) {
   for (const float share : {kShare, 1.0f}) {
-    CutRoom room(share);
+    Material white = matte(Rgb(1.0f));
+    white.diffuse_transmission = share;
+    CutRoom room(white);
     Chain chain(room.scene, 400000, 5000, 64, 16);
-    const double expected = CutRoom::kFlux / (CutRoom::kArea * (1 - CutRoom::kRho));
-    EXPECT_NEAR(on_walls(chain, nullptr, 60000) / expected, 1, 0.015) << share;
     KnownLight known;
     known.points = &chain.lookup;
-    EXPECT_NEAR(on_walls(chain, &known, 60000) / expected, 1, 0.015) << share;
+    for (const KnownLight* const light : {static_cast<KnownLight*>(nullptr), &known}) {
+      const auto seen = CutRoom::on_walls(chain, light, 60000);
+      const double all = seen[std::size_t(Layer::direct)] + seen[std::size_t(Layer::indirect)];
+      EXPECT_NEAR(all * M_PI / CutRoom::kRho / CutRoom::kIrradiance, 1, 0.015) << share;
+    }
     // The photons' indirect light is all light but what the glowing wall sends to the other walls directly.
     const PointLookup none({}, 1);
     const FinalGather by_paths(chain.tracer, chain.lights, none, {.rays = 64});
-    EXPECT_NEAR(gathered(chain, chain.gather) / gathered(chain, by_paths), 1, 0.02) << share;
+    EXPECT_NEAR(CutRoom::gathered(chain, chain.gather) / CutRoom::gathered(chain, by_paths), 1, 0.02) << share;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/chain.h"
+#include "tests/support/cut_room.h"
 #include "tests/support/frames.h"
 #include "tests/support/layers.h"
 #include "tests/support/materials.h"
@@ -19,6 +20,7 @@ namespace tempolux {
 namespace {
 
 using test::Chain;
+using test::CutRoom;
 using test::HandMadeScene;
 using test::matte;
 using test::Mean;
@@ -242,62 +244,14 @@ TEST(Panes, AreNoEventBehindALambertLobe) {
   EXPECT_EQ(seen.layer(), Layer::specular);
 }
 
-/// A white room 4 m long, cut in the middle by a clear pane that absorbs nothing. One end wall glows.
-struct CutRoom {
-  static constexpr double kArea = 2 * 4 + 4 * 8, kRho = 0.5, kFlux = M_PI * 4;  // m^2, 1, W
-  HandMadeScene scene;
-  explicit CutRoom(float everywhere = 0) {
-    const Vec3 l{-2, -1, -1}, u{2, 1, 1};
-    const auto wall = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d, float emission) {
-      scene.add_quad(a, b, c, d, matte(Rgb(float(kRho)), Rgb(emission)));
-    };
-    wall({l.x, l.y, l.z}, {l.x, u.y, l.z}, {l.x, u.y, u.z}, {l.x, l.y, u.z}, everywhere > 0 ? everywhere : 1);
-    wall({u.x, l.y, l.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {u.x, u.y, l.z}, everywhere);
-    wall({l.x, l.y, l.z}, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, l.y, l.z}, everywhere);
-    wall({l.x, u.y, l.z}, {u.x, u.y, l.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}, everywhere);
-    wall({l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, everywhere);
-    wall({l.x, l.y, u.z}, {l.x, u.y, u.z}, {u.x, u.y, u.z}, {u.x, l.y, u.z}, everywhere);
-    Material pane = test::glass(0, true);
-    pane.double_sided = true;
-    scene.add_quad({0, l.y, l.z}, {0, u.y, l.z}, {0, u.y, u.z}, {0, l.y, u.z}, pane);
-  }
-};
-
-/// Layers, as means over all walls, seen from just above.
-std::array<double, kLayerCount> on_walls(const Chain& chain, const KnownLight* known, std::uint32_t count) {
-  const test::AreaSampler area(chain.frame);
-  const double share = CutRoom::kArea / area.area();  // the pane is sampled last
-  std::array<double, kLayerCount> mean{};
-  RayCounts counts;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Vec3 p, n;
-    area.sample((float(i) + 0.5f) / float(count) * float(share), sobol_owen_2d(i, 5), p, n);
-    const Layers seen = trace_eye_path({chain.tracer, chain.lights}, {p + n * 0.01f, -n, 0, INFINITY},
-                                       PixelRandom(3, i, 0), known, counts);
-    for (std::size_t l = 0; l < kLayerCount; ++l) mean[l] += double(seen.value[l].g) / count;
-  }
-  return mean;
-}
-
-/// Mean indirect irradiance of the walls by gather rays.
-double gathered(const Chain& chain, const FinalGather& gather) {
-  const test::AreaSampler area(chain.frame);
-  GatherCounts counts;
-  Mean mean;
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    Vec3 p, n;
-    area.sample((float(i) + 0.5f) / 2000 * float(CutRoom::kArea / area.area()), sobol_owen_2d(i, 5), p, n);
-    if (const auto place = chain.surface_at(p, n, 0.01f))
-      mean.add(double(gather.gather(place->first, n, counts).irradiance.g));
-  }
-  return mean.mean();
-}
+/// A clear pane that absorbs nothing.
+Material clear_pane() { return test::glass(0, true); }
 
 /// The pane keeps all light in the room, so its walls receive F / (S (1 - rho)) in the mean, by whatever mixture of
 /// paths, points, caustic photons and gather rays. Tolerances as for GatherInPixels; the pilot of 60000 paths has a
 /// noise of 0.5 %.
 TEST(Panes, NoLightIsCountedTwiceOrLost) {
-  CutRoom room;
+  CutRoom room(clear_pane());
   Chain chain(room.scene, 400000, 5000, 64, 16);
   PhotonLightOptions caustics;
   caustics.caustic_only = true;
@@ -310,10 +264,10 @@ TEST(Panes, NoLightIsCountedTwiceOrLost) {
     KnownLight known;
     known.points = &chain.lookup;
     if (mode == 2) known.photons = &photons;
-    const auto mean = on_walls(chain, mode > 0 ? &known : nullptr, 60000);
+    const auto mean = CutRoom::on_walls(chain, mode > 0 ? &known : nullptr, 60000);
     if (mode == 0) path = mean;
     const double all = of(mean, Layer::direct) + of(mean, Layer::caustic) + of(mean, Layer::indirect);
-    EXPECT_NEAR(all / (CutRoom::kFlux / (CutRoom::kArea * (1 - CutRoom::kRho))), 1, 0.015) << mode;
+    EXPECT_NEAR(all / CutRoom::kIrradiance, 1, 0.015) << mode;
     for (const Layer layer : {Layer::direct, Layer::indirect})
       EXPECT_NEAR(of(mean, layer) / of(path, layer), 1, 0.02) << mode << kLayerNames[std::size_t(layer)];
     // The pane reflects 4 %, so few paths and photons carry caustic light: a noise of some 8 %.
@@ -323,19 +277,19 @@ TEST(Panes, NoLightIsCountedTwiceOrLost) {
   // Gather rays of records find the same indirect light, at points and, where there are none, by going on.
   const PointLookup none({}, 1);
   const FinalGather by_paths(chain.tracer, chain.lights, none, {.rays = 64});
-  EXPECT_NEAR(gathered(chain, chain.gather) / of(path, Layer::indirect), 1, 0.02);
-  EXPECT_NEAR(gathered(chain, by_paths) / of(path, Layer::indirect), 1, 0.02);
+  EXPECT_NEAR(CutRoom::gathered(chain, chain.gather) / of(path, Layer::indirect), 1, 0.02);
+  EXPECT_NEAR(CutRoom::gathered(chain, by_paths) / of(path, Layer::indirect), 1, 0.02);
 }
 
 /// All walls emit 1 and reflect one half: 2 everywhere, on both sides of the pane and through the pane.
 TEST(Panes, AreInvisibleInAFurnace) {
-  CutRoom room(1);
+  CutRoom room(clear_pane(), 1);
   const Chain chain(room.scene, 400000, 3000, 4, 16);
   KnownLight known;
   known.points = &chain.lookup;
   for (const bool points : {false, true}) {
     double all = 0;
-    for (const double layer : on_walls(chain, points ? &known : nullptr, 40000)) all += layer;
+    for (const double layer : CutRoom::on_walls(chain, points ? &known : nullptr, 40000)) all += layer;
     EXPECT_NEAR(all, 2, 0.01) << points;
   }
   RayCounts counts;
@@ -350,12 +304,12 @@ TEST(Panes, AreInvisibleInAFurnace) {
 
 /// The same with smoke that only scatters: still 2. Light that smoke sends through the pane is sampled and met, too.
 TEST(Panes, AreInvisibleInASmokyFurnace) {
-  CutRoom room(1);
+  CutRoom room(clear_pane(), 1);
   MediumOptions smoke;
   smoke.albedo = Rgb(1.0f);
   room.scene.set_media(test::cube_of_medium({0, 0, 0}, 5, smoke));
   const Chain chain(room.scene, 1000, 10, 4);
-  const auto path = on_walls(chain, nullptr, 60000);
+  const auto path = CutRoom::on_walls(chain, nullptr, 60000);
   double all = 0;
   for (const double layer : path) all += layer;
   EXPECT_NEAR(all, 2, 0.01);
@@ -363,7 +317,7 @@ TEST(Panes, AreInvisibleInASmokyFurnace) {
   const FinalGather by_paths(chain.tracer, chain.lights, none, {.rays = 64});
   // The eye sees the walls through 1 cm of smoke with an extinction of 1 / m.
   const double indirect = path[std::size_t(Layer::indirect)] / std::exp(-0.01);
-  EXPECT_NEAR(gathered(chain, by_paths) / (indirect * M_PI / CutRoom::kRho), 1, 0.01);
+  EXPECT_NEAR(CutRoom::gathered(chain, by_paths) / (indirect * M_PI / CutRoom::kRho), 1, 0.01);
 }
 
 /// Photons close to a lamp pass the pane between lamp and floor, too. A point light of I = 1 at height 0.3 m, the pane

@@ -397,14 +397,19 @@ TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
   EXPECT_EQ(scene.materials[1], Material{});
 }
 
-TEST(GltfLoad, LayersAreReadWithTheirTextures) {
-  GltfMaker maker;
+/// Gives a file a texture of one pixel. Returns the reference to the texture.
+Json add_pixel(GltfMaker& maker) {
   const char* pixel =
       "data:image/"
       "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
   maker.json["images"] = {{{"uri", pixel}}};
   maker.json["textures"] = {{{"source", 0}}};
-  const Json texture = {{"index", 0}};
+  return {{"index", 0}};
+}
+
+TEST(GltfLoad, LayersAreReadWithTheirTextures) {
+  GltfMaker maker;
+  const Json texture = add_pixel(maker);
   maker.add_material(
       {{"extensions",
         {{"KHR_materials_clearcoat",
@@ -434,11 +439,7 @@ TEST(GltfLoad, LayersAreReadWithTheirTextures) {
 
 TEST(GltfLoad, FilmsAndDispersionAreRead) {
   GltfMaker maker;
-  const char* pixel =
-      "data:image/"
-      "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
-  maker.json["images"] = {{{"uri", pixel}}};
-  maker.json["textures"] = {{{"source", 0}}};
+  const Json texture = add_pixel(maker);
   maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {
       "KHR_materials_iridescence", "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_dispersion"};
   maker.add_material({{"extensions",
@@ -447,8 +448,8 @@ TEST(GltfLoad, FilmsAndDispersionAreRead) {
                           {"iridescenceIor", 1.75},
                           {"iridescenceThicknessMinimum", 200},
                           {"iridescenceThicknessMaximum", 600},
-                          {"iridescenceTexture", {{"index", 0}}},
-                          {"iridescenceThicknessTexture", {{"index", 0}}}}},
+                          {"iridescenceTexture", texture},
+                          {"iridescenceThicknessTexture", texture}}},
                         {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                         {"KHR_materials_volume", {{"thicknessFactor", 1}}},
                         {"KHR_materials_dispersion", {{"dispersion", 0.25}}}}}});

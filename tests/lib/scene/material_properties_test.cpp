@@ -40,7 +40,7 @@ bool flip_member(MaterialValues& m, int n) {
          attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat, clearcoat_roughness,
          iridescence, iridescence_ior, iridescence_thickness_minimum, iridescence_thickness_maximum, sheen_color,
          sheen_roughness, anisotropy, anisotropy_rotation, diffuse_transmission, diffuse_transmission_color, axes,
-         from_behind] = m;
+         from_far_side] = m;
   return flip_one(n, base_color, metallic, roughness, emission, specular, specular_color, ior, transmission,
                   thin_walled, attenuation_color, attenuation_distance, dispersion, double_sided, unlit, clearcoat,
                   clearcoat_roughness, iridescence, iridescence_ior, iridescence_thickness_minimum,
