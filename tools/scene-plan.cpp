@@ -26,13 +26,13 @@ namespace {
 /// Options that choose the methods.
 void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
   Wish& wish = options.wish;
-  tool.choice_option("--quality", options.quality, {"draft", "final"},
-                     "draft: fewer samples and more noise; final");
+  tool.choice_option("--quality", options.quality, {"draft", "final"}, "draft: fewer samples and more noise; final");
   tool.choice_option(
-      "--method", options.method, {"frames", "walkthrough", "auto", "preview", "still"},
-      "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
-      "walkthrough where it pays; preview: fast, with light textures from the photons of many frames; still: while the "
-      "camera stands, only pixels that change are sampled");
+      "--method", options.method, {"auto", "frames", "still", "walkthrough", "preview"},
+      "frames: every frame is rendered; still: while the camera stands, only pixels that change are sampled; auto: "
+      "still where it pays, else frames; walkthrough: key frames are rendered, frames between them are warped; "
+      "preview: "
+      "fast, with light textures from the photons of many frames");
   tool.choice_option(
       "--filter", options.filter, {"auto", "none", "1", "3", "5", "7", "9"},
       "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "

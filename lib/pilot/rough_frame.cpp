@@ -22,16 +22,15 @@
 #include "lib/pilot/pilot_photons.h"
 #include "lib/render/pixel_noise.h"
 #include "lib/pilot/places_seen.h"
+#include "lib/pilot/rough_light.h"
 #include "lib/pilot/see_photons.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kSamples = 4;             ///< samples of a place, as many as the first samples of a pixel (FrameOptions)
-constexpr double kFirst = kSamples;     ///< fewest samples of a pixel of a frame
-constexpr int kRecords = 64;            ///< places with two records each: the variance errs by sqrt(2 / 64) = 18 %
-constexpr std::uint32_t kPoints = 500;  ///< irradiance points per side (figures: docs/notebook/constants.md)
-constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough record
+constexpr int kSamples = 4;          ///< samples of a place, as many as the first samples of a pixel (FrameOptions)
+constexpr double kFirst = kSamples;  ///< fewest samples of a pixel of a frame
+constexpr int kRecords = 64;         ///< places with two records each: the variance errs by sqrt(2 / 64) = 18 %
 /// Largest number of pixels at which the need for records is tested. The test then takes a tenth of a second. In a
 /// picture with more pixels the tested pixels form a lattice.
 constexpr double kLooks = 320 * 180;
@@ -219,51 +218,6 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
   rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
 }
 
-/// Irradiance points and bright points, made of the pilot's photons, in place of the frame's files.
-class RoughLight {
- public:
-  /// photons: of kPilotPaths light paths. paths: number of light paths of the frame's map. The radii of the points are
-  /// reduced to those of the frame's map, so that as many hits are close hits as in the frame.
-  RoughLight(const RenderScene& scene, formats::PhotonBlock photons, std::uint64_t paths, const RoughOptions& options)
-      : photons_(std::move(photons)) {
-    PointOptions placing;
-    placing.seed = options.seed;
-    placing.count = kPoints;
-    placing.seen.assign(options.seen.begin(), options.seen.end());
-    placed_ = place_points(scene.frame(), placing);
-    estimate_points(scene.tracer, scene.lights, photons_, {}, placing, placed_.points);
-    const double narrower = std::sqrt(double(kPilotPaths) / double(std::max(kPilotPaths, paths)));
-    for (IrradiancePoint& point : placed_.points) point.radius *= float(narrower);
-    lookup_.emplace(placed_.points, placed_.spacing, point_clearance(scene.tracer));
-    lookup_->take_as_even();
-    lamps_ = note_lamps_beside(scene.tracer, scene.lights, *lookup_);
-    const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
-    if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
-  }
-  /// The light that samples of pixels may read from the points. Bright points are left out, because usually only
-  /// records sample bright points explicitly.
-  KnownLight known() const {
-    KnownLight known;
-    known.points = &*lookup_;
-    return known;
-  }
-  GatherOptions gathering(std::uint64_t seed) const {
-    GatherOptions options;
-    options.seed = seed;
-    options.rays = kRays;
-    options.bright = bright_ ? &*bright_ : nullptr;
-    return options;
-  }
-  const PointLookup& lookup() const { return *lookup_; }
-
- private:
-  formats::PhotonBlock photons_;
-  PlacedPoints placed_;
-  std::optional<PointLookup> lookup_;
-  std::vector<LampPhoton> lamps_;
-  std::optional<BrightPoints> bright_;
-};
-
 /// Inputs of all measurements of a rough frame.
 struct Picture {
   const RenderScene& scene;
@@ -347,13 +301,13 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
   GatherCounts all;
   double gathered = 0;
   for (const Pair& pair : pairs) {
-    rough.record_error += pair.error2 / double(pairs.size()) * kRays;
+    rough.record_error += pair.error2 / double(pairs.size()) * RoughLight::kRays;
     gathered += pair.gathered ? 2 : 0;
     all += pair.counts;
   }
   if (gathered > 0)
-    rough.record_ray =
-        (double(all.rays) + double(all.shadow_rays) + Work::kRay * double(all.distance_rays)) / (gathered * kRays);
+    rough.record_ray = (double(all.rays) + double(all.shadow_rays) + Work::kRay * double(all.distance_rays)) /
+                       (gathered * RoughLight::kRays);
 }
 
 /// Adds light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found.
@@ -467,7 +421,7 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   bound_by_paths(options, rough);
   const auto enough = [&] { return options.enough && options.enough(rough); };
   if (enough()) return rough;
-  const RoughLight light(scene, std::move(photons), rough.paths_of_light, options);
+  const RoughLight light(scene, photons, rough.paths_of_light, options.seed, options.seen);
   measure_gathering(picture, light, lone, rough);
   if (!enough()) measure_records(picture, light, rough);
   return rough;

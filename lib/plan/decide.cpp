@@ -11,6 +11,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/formatted.h"
 #include "lib/plan/looks.h"
 #include "lib/plan/stages.h"
 #include "lib/plan/view_of.h"
@@ -31,6 +32,12 @@ constexpr std::size_t kFewestForKeys = 4;
 constexpr const char* kRecordsReason = "irradcache-build records";
 constexpr const char* kMovingReason = "photon-trace --map dynamic";
 constexpr const char* kSplitReason = "photonmap-split";
+constexpr const char* kStillReason = "frame-render --still";
+
+/// The work of a frame, over what the pilot of decide_still() says (docs/methods/still.md).
+constexpr double kStillPilotError = 2;
+/// Samples of the frame that gives the kept pixels, over those of a frame that keeps none (docs/methods/still.md).
+constexpr double kStillBase = 3.4;
 
 /// What is decided about.
 struct Deciding {
@@ -344,6 +351,28 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   }
   decide_walk(segment, d);
   return d;
+}
+
+void decide_still(const PlannedSegment& segment, const PlannedFrame& middle, int shot_frames, const Wish& wish,
+                  bool media, const SceneSource& source, Decisions& d) {
+  std::vector<int> others;
+  for (const PlannedFrame& frame : segment.frames)
+    if (frame.camera == middle.camera && frame.light != middle.light) others.push_back(frame.frame);
+  const auto because = [&](const std::string& why) { d.reasons.push_back({kStillReason, why}); };
+  if (media) return because("there are media, which all light meets");
+  if (segment.is_blurred()) return because("lens or shutter blur the pictures");
+  if (!wish.preset_pixels) return because("the user gives the options of pixels");
+  if (wish.filter > 1) return because("the frames of a filter's window need independent noise");
+  if (others.empty()) return because("no frame has the camera of the shot's middle frame and other light");
+  StaticTree tree, middle_tree;
+  const int number = others[others.size() / 2];
+  const FramePilot now(wish, source, number, d.kinds, tree), before(wish, source, middle.frame, d.kinds, middle_tree);
+  const double work = now.still_work(before, d), of_middle = kStillBase / shot_frames;
+  d.still = kStillPilotError * work + of_middle < 1;
+  because(
+      formatted("a frame that keeps pixels of frame %d has %.2f of the work of one that keeps none, and a part of "
+                "frame %d's: %.2f",
+                middle.frame, work, middle.frame, of_middle));
 }
 
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media) {

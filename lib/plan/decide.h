@@ -33,6 +33,14 @@ Decisions decide_shot(const std::vector<PlannedSegment>& pieces, const Wish& wis
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                  const Decisions* shot = nullptr);
 
+/// Decides whether the frames of a segment keep pixels of the shot's middle frame (METHOD=still). The camera must
+/// stand. A pilot compares a frame of the segment with the middle frame. It pays if two works together are below the
+/// work of a frame that keeps nothing: the work of a frame, with the pilot's error, and the frame's part of the middle
+/// frame's (docs/methods/still.md). shot_frames: number of frames of the animation, which share the middle frame. d:
+/// decisions of the segment.
+void decide_still(const PlannedSegment& segment, const PlannedFrame& middle, int shot_frames, const Wish& wish,
+                  bool media, const SceneSource& source, Decisions& d);
+
 /// Hash of everything that decide() depends on: equal keys mean equal decisions, which a file can keep.
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media);
 

@@ -19,7 +19,7 @@ enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
 /// How the frames of a range are made. frames: each frame is rendered. walkthrough: key frames are rendered, and frames
-/// between them are warped. automatic: walkthrough in segments where warping pays. preview: indirect light from the
+/// between them are warped. automatic: still in segments where it pays, else frames. preview: indirect light from the
 /// photons of many frames. still: while the camera stands, only pixels that change are sampled.
 enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview, still };
 inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview", "still"};
@@ -44,7 +44,7 @@ struct Measured {
 struct Wish {
   static constexpr int kAutoFilter = -1;  ///< value of `filter`: from the preset
   Quality quality = Quality::final;
-  FrameMethod method = FrameMethod::frames;
+  FrameMethod method = FrameMethod::automatic;
   int filter = kAutoFilter;       ///< number of frames in the filter's window, odd; 0: no filter
   std::string indirect = "auto";  ///< "auto", or one of kIndirectMethods
   std::string moving = "auto";    ///< "auto", or one of kMovingMethods
@@ -54,6 +54,7 @@ struct Wish {
   double pixel_error = 0;         ///< 0: from the preset
   /// Options of irradcache-build points, of irradcache-build records, and of frame-render; "": from the preset.
   std::string points, records, pixels;
+  int first_samples = 4;       ///< of a pixel, by the preset
   bool preset_pixels = false;  ///< `pixels` holds the preset's options without --pixel-error, which is in Decisions
   std::string channels = "RGBA,Z,N,id";
   std::optional<double> exposure;    ///< of the previews, stops; empty: what suits the first frame
@@ -103,7 +104,9 @@ struct Decisions {
   /// Records for the cameras of this many consecutive pictures, as a multiple of one picture's records.
   static double records_of(double pictures, double new_share) { return 1 + new_share * (pictures - 1); }
   double records_of(double pictures) const { return records_of(pictures, new_share); }
-  bool walk = false;        ///< true: key frames and warping pay; METHOD=auto then makes a walkthrough
+  bool walk = false;  ///< true: warping can make pictures between key frames
+  /// True: keeping pixels of the shot's middle frame pays (METHOD=still); METHOD=auto then does it.
+  bool still = false;
   std::string view;         ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;  ///< frames for which pilots ran
   std::vector<Reason> reasons;

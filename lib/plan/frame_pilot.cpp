@@ -1,16 +1,20 @@
 #include "lib/plan/frame_pilot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/pilot/hidden_light.h"
 #include "lib/pilot/pilot_photons.h"
 #include "lib/pilot/places_seen.h"
 #include "lib/pilot/seen_spheres.h"
+#include "lib/render/still_pixels.h"
 
 namespace tempolux {
 namespace {
 
 constexpr std::size_t kMostViews = 16;
+/// Size of the pieces in which still_work() compares two moments, in pixels.
+constexpr int kStillWidth = 8 * kPixelsOfPiece, kStillHeight = 4 * kPixelsOfPiece;
 
 CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wish& wish) {
   PlacedCamera camera = frame.camera(source.camera_node);
@@ -65,6 +69,16 @@ PreviewPilot FramePilot::preview() { return pilot_preview({tracer_, aimed()}, ki
 double FramePilot::kernel() { return pilot_kernel({tracer_, aimed()}, kinds_, 0); }
 SplitChoice FramePilot::split() { return choose_split(pilot_split({tracer_, lights_}, view_, 0)); }
 MovingPilot FramePilot::moving() { return pilot_moving({tracer_, lights_}, table_, view_, 0); }
+
+double FramePilot::still_work(const FramePilot& before, const Decisions& d) const {
+  const CameraView pieces(view_.camera(), frame_.origin, std::min(kStillWidth, wish_.width),
+                          std::min(kStillHeight, wish_.height));
+  FrameOptions options;
+  options.samples = wish_.first_samples;
+  options.pixel_error = d.pixel_error;
+  const RenderScene now{tracer_, lights_, lights_.has_suns()}, then{before.tracer_, before.lights_, lights_.has_suns()};
+  return tempolux::still_work({now, view_, nullptr, 0}, {then, view_, nullptr, 0}, pieces, options, !d.records());
+}
 
 double FramePilot::new_share(const PlannedSegment& segment) const {
   const std::vector<int> pictures = spread(segment.views());

@@ -59,6 +59,8 @@ class FramePilot {
   double kernel();         ///< pilot_kernel(): photons below the best Gaussian of a light texture
   SplitChoice split();     ///< choose_split() by a pilot
   MovingPilot moving();    ///< pilot_moving()
+  /// still_work() against another frame, in pieces of the picture, by camera paths.
+  double still_work(const FramePilot& before, const Decisions& d) const;
   /// Mean share of a picture of the segment that the picture before does not show.
   double new_share(const PlannedSegment& segment) const;
 

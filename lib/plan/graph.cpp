@@ -169,8 +169,7 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
   for (const int frame : frames) {
     add(frame - wish.filter / 2, frame + wish.filter / 2);
     const int first = frame - frame % wish.key_distance;
-    if (wish.method == FrameMethod::walkthrough || wish.method == FrameMethod::automatic)
-      add(first, first + wish.key_distance);
+    if (wish.method == FrameMethod::walkthrough) add(first, first + wish.key_distance);
   }
   return {helpers.begin(), helpers.end()};
 }

@@ -30,7 +30,9 @@ std::string pixels_with(const GraphBuilder& g, int frame, double finer) {
 /// `frame` has another camera than the middle frame, if lens or shutter blur it, or if the two frames read different
 /// kinds of light files.
 std::optional<int> still_frame(const GraphBuilder& g, int frame) {
-  if (g.wish.method != FrameMethod::still || g.plan.media) return {};
+  const bool wanted =
+      g.wish.method == FrameMethod::still || (g.wish.method == FrameMethod::automatic && g.decided(frame).still);
+  if (!wanted || g.plan.media) return {};
   const std::optional<int> middle = g.plan.middle();
   if (!middle) return {};
   const PlannedFrame &there = g.state(*middle), &here = g.state(frame);
@@ -62,10 +64,7 @@ std::string sampled_picture(GraphBuilder& g, const StageInfo& stage, int frame, 
 }
 
 std::string clear_picture(GraphBuilder& g, int frame) {
-  const bool walk =
-      !g.plan.media && (g.wish.method == FrameMethod::walkthrough ||
-                        (g.wish.method == FrameMethod::automatic && g.decided(frame).walk && g.wish.filter <= 1));
-  if (walk) return walked_picture(g, frame);
+  if (g.wish.method == FrameMethod::walkthrough) return walked_picture(g, frame);
   if (g.wish.filter > 0) return filtered_picture(g, frame, g.wish.channels);
   return sampled_picture(g, stage_in("pictures"), frame, "", g.wish.channels);
 }

@@ -230,6 +230,19 @@ std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan,
   return pieces;
 }
 
+/// Adds the segment of the animation's middle frame, if its camera is that of a frame in the plan.
+void add_middle(Plan& plan) {
+  const int middle = plan.last_frame / 2;
+  const auto holds = [&](const PlannedSegment& segment) { return segment.first <= middle && middle <= segment.last; };
+  const auto piece = std::ranges::find_if(plan.shot, holds);
+  if (piece == plan.shot.end() || std::ranges::any_of(plan.segments, holds)) return;
+  const std::string& camera = piece->at(middle).camera;
+  const bool seen = std::ranges::any_of(plan.segments, [&](const PlannedSegment& segment) {
+    return std::ranges::find(segment.frames, camera, &PlannedFrame::camera) != segment.frames.end();
+  });
+  if (seen) plan.segments.insert(std::ranges::lower_bound(plan.segments, middle, {}, &PlannedSegment::first), *piece);
+}
+
 /// The different values of a member, ascending; with `lit` only in that state of light.
 std::vector<int> values_of(const PlannedSegment& segment, int PlannedFrame::*member, std::optional<int> lit) {
   std::set<int> values;
@@ -297,11 +310,11 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     needed.insert(shown);
   }
   for (const int frame : others) needed.insert(std::clamp(frame, 0, plan.last_frame));
-  if (with_middle) needed.insert(plan.last_frame / 2);
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
   plan.shot = pieces_of_shot(scene, plan, camera_node, media);
+  if (with_middle) add_middle(plan);
   if (!outside.empty())
     plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") +
                             " outside the animation (" + extent_in_words(scene, options) +

@@ -83,8 +83,9 @@ using MediaHash = std::function<std::string(int frame)>;
 
 /// Evaluates the segments that hold `frames` and `others`, and compares their frames by content hashes. Neither file
 /// times nor the file's declarations of what is animated count. `others` are frames that the requested frames need:
-/// neighbours and keys. with_middle: Plan::middle() is needed, too. A requested frame outside the animation shows the
-/// animation's closest frame, with a warning. Decisions keep their defaults.
+/// neighbours and keys. with_middle: the plan gets the segment of the animation's middle frame as well, if the camera
+/// of the middle frame is that of another frame. A requested frame outside the animation shows the animation's closest
+/// frame, with a warning. Decisions keep their defaults.
 ///
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Throws InputError for a scene without light and
 /// for a scene that cannot be evaluated, std::invalid_argument for an empty `frames`.

@@ -47,6 +47,7 @@ void each_decision(AnyDecisions& d, const Visit& visit) {
   visit("new_share", d.new_share);
   visit("pictures_together", d.together);
   visit("walkthrough", d.walk);
+  visit("still", d.still);
   visit("view", d.view);
   visit("looked_at", d.looked);
   visit("because", d.reasons);

@@ -30,6 +30,7 @@ Wish with_preset(Wish wish) {
   // pixel, 2 GB at 1920x1080, so larger pictures are not filtered by default.
   if (wish.filter == Wish::kAutoFilter)
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
+  wish.first_samples = preset.first_samples;
   if (wish.pixels.empty()) {
     wish.pixels = "--spp " + std::to_string(preset.first_samples);
     wish.preset_pixels = true;

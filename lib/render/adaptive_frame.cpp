@@ -11,27 +11,6 @@
 namespace tempolux {
 namespace {
 
-/// Largest number of samples of the part lit, and of the part onward, per camera ray. Samples at one place miss the
-/// differences between the places of a pixel, such as edges of shadows and folds.
-constexpr int kMostPerRay = 2;
-
-/// Joins sums over `count` new samples of each part to `means`, the means over the `first` samples before them.
-void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& count, PathParts& means) {
-  join(sum.own, first.own, count.own, means.own);
-  join(sum.lit, first.lit, count.lit, means.lit);
-  join(sum.onward, first.onward, count.onward, means.onward);
-  join(sum.stored_noise, first.own, count.own, means.stored_noise);
-}
-
-/// Numbers of further samples that a pixel with `have` samples needs to reach `wanted`. Samples of the parts lit and
-/// onward start from camera rays, so they need further camera rays, too.
-PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
-  const auto further = [](int has, int wants) { return std::max(0, wants - has); };
-  PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
-  more.own = std::max(more.own, (std::max(more.lit, more.onward) + kMostPerRay - 1) / kMostPerRay);
-  return more;
-}
-
 /// The passes of samples of one frame.
 class AdaptiveFrame {
  public:
@@ -114,7 +93,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
   const std::uint64_t before = frame_.rays.camera;
   for_each_pixel(view_, options_.mask, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PartCounts& have = counts_[pixel];
-    const PartCounts more = missing(have, noise_.wanted_at(x, y, times));
+    const PartCounts more = missing_samples(have, noise_.wanted_at(x, y, times));
     if (more.own == 0) return;
     const PixelPass pass{pixel, x, y, have, more};
     PixelSum sum;
@@ -124,7 +103,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
     });
     join_parts(sum, have, more, parts_[pixel]);
     take_again(pass);
-    have = {have.own + more.own, have.lit + more.lit, have.onward + more.onward};
+    have = have + more;
   });
   return frame_.rays.camera - before;
 }
@@ -153,7 +132,7 @@ void AdaptiveFrame::spread() {
   for (const std::size_t pixel : judged) samples.further[pixel] = {};
   frame_.rays += parallel_sum<RayCounts>(judged.size(), 64, [&](std::size_t i, RayCounts& rays) {
     const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
-    const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
+    const PartCounts &have = counts_[pixel], more = missing_samples(have, {kJudges, kJudges, kJudges});
     const PixelPass pass{pixel, int(pixel % width), int(pixel / width), have, more};
     FurtherSamples& further = samples.further.at(pixel);
     further.count = more;

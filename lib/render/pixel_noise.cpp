@@ -175,6 +175,13 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
           wanted(onward_variance, std::max(1.0, near.rays / near.n), first_.onward)};
 }
 
+double PixelNoise::cost_at(int x, int y, const PartCounts& samples) const {
+  double n = 0, rays = 0;
+  for_each_around(view_.width(), view_.height(), x, y, kNearPixels,
+                  [&](std::size_t at, int, int) { ++n, rays += double(pixels_[at].onward_rays); });
+  return kOwn * samples.own + samples.lit + std::max(1.0, n > 0 ? rays / n : 0) * samples.onward;
+}
+
 void PixelNoise::all_noted() {
   std::vector<double> means;
   for (int y = lattice_ / 2; y < view_.height(); y += lattice_)

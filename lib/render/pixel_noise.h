@@ -46,6 +46,8 @@ class PixelNoise {
   /// Stores the sums over the two halves of a pixel's first samples. onward_rays: cost of their part onward, in shadow
   /// rays. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
+  /// Radiance of a pixel's first samples, mean of the channels [W/m^2/sr].
+  double mean_at(std::size_t pixel) const { return pixels_[pixel].mean; }
   /// Sets the radiance of a pixel if note() got differences between two frames. Call after note().
   void set_level(std::size_t pixel, double mean) { pixels_[pixel].mean = mean; }
   /// Computes the radiance of the picture. Call after note() of all pixels and before wanted_at().
@@ -53,6 +55,8 @@ class PixelNoise {
   /// Number of samples of each part that a pixel is to have in all: `times` as many as pixel_error asks for, at least
   /// first(), at most FrameOptions::adaptive_limit.
   PartCounts wanted_at(int x, int y, double times) const;
+  /// Cost of samples of a pixel in shadow rays, by the first samples of the pixels around it.
+  double cost_at(int x, int y, const PartCounts& samples) const;
   /// The error that a pixel may have if the radiance around it is `level` [W/m^2/sr].
   double error_at(double level) const { return allowed_error(level, picture_, options_.pixel_error); }
 

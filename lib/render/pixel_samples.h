@@ -16,7 +16,20 @@ namespace tempolux {
 /// Numbers of samples of each part (PathParts). `own` is the number of camera rays.
 struct PartCounts {
   int own = 0, lit = 0, onward = 0;
+  PartCounts operator+(const PartCounts& o) const { return {own + o.own, lit + o.lit, onward + o.onward}; }
 };
+
+/// Numbers of further samples that a pixel with `have` samples needs to reach `wanted`. Samples of the parts lit and
+/// onward start from camera rays, so they need further camera rays, too.
+inline PartCounts missing_samples(const PartCounts& have, const PartCounts& wanted) {
+  // At most two samples of each part per camera ray: samples at one place miss the differences between the places of a
+  // pixel, such as edges of shadows and folds.
+  constexpr int kMostPerRay = 2;
+  const auto further = [](int has, int wants) { return std::max(0, wants - has); };
+  PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
+  more.own = std::max(more.own, (std::max(more.lit, more.onward) + kMostPerRay - 1) / kMostPerRay);
+  return more;
+}
 
 /// Sums over samples of one pixel.
 struct PixelSum {
@@ -76,6 +89,14 @@ inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNo
 /// The same for a sum of three parts with `count` samples each.
 inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(sum.own + (sum.lit + sum.onward), first, count, mean);
+}
+
+/// Joins sums over `count` new samples of each part to `means`, the means over the `first` samples before them.
+inline void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& count, PathParts& means) {
+  join(sum.own, first.own, count.own, means.own);
+  join(sum.lit, first.lit, count.lit, means.lit);
+  join(sum.onward, first.onward, count.onward, means.onward);
+  join(sum.stored_noise, first.own, count.own, means.stored_noise);
 }
 
 /// Calls body(pixel, x, y, counts) for each pixel of the mask (empty: for every pixel), row by row within a tile, with

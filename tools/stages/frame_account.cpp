@@ -103,23 +103,25 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   return numbers;
 }
 
-void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise) {
+void add_noise_of_kept(const Image& from, const StillPixels& still, FrameNoise& noise) {
   const auto number = [&](const std::string& name) {
     const auto found = from.numbers.find("tempolux:" + name);
     return found == from.numbers.end() ? 0.0 : found->second;
   };
-  const bool any = noise.known();
-  const auto join = [&](const std::string& name, Noise& of) {
-    const Noise kept{number(name + ".linear"), number(name + ".linear_error"), number(name + ".codes"),
+  const double anew = still.share_anew();
+  const auto join = [&](const std::string& name, const Noise& change, Noise& of) {
+    const Noise base{number(name + ".linear"), number(name + ".linear_error"), number(name + ".codes"),
                      number(name + ".codes_error")};
+    const auto square = [](bool known, double value) { return known && value > 0 ? value * value : 0; };
     const auto joined = [&](double Noise::*value) {
-      const double square = any ? std::max(0.0, of.*value) * std::max(0.0, of.*value) : 0;
-      return std::sqrt(share_anew * square + (1 - share_anew) * (kept.*value) * (kept.*value));
+      const double kept = square(true, base.*value) + square(still.noise.known(), change.*value);
+      return std::sqrt(anew * square(noise.known(), of.*value) + (1 - anew) * kept);
     };
     of = {joined(&Noise::linear), joined(&Noise::linear_error), joined(&Noise::codes), joined(&Noise::codes_error)};
   };
-  join("noise", noise.image);
-  for (std::size_t l = 0; l < kLayerCount; ++l) join("noise." + std::string(kLayerNames[l]), noise.layer[l]);
+  join("noise", still.noise.image, noise.image);
+  for (std::size_t l = 0; l < kLayerCount; ++l)
+    join("noise." + std::string(kLayerNames[l]), still.noise.layer[l], noise.layer[l]);
   if (!(noise.exposure > 0)) noise.exposure = number("noise.exposure");
   noise.pixels += std::size_t(number("noise.pixels"));
 }

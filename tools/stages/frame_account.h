@@ -8,6 +8,7 @@
 #include "lib/audit/advice.h"
 #include "lib/audit/audit.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/render/still_pixels.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {
@@ -19,7 +20,7 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
 /// --still: joins the noise of the pixels that were sampled anew with the noise of the frame `from`, which gives the
 /// kept pixels. share_anew: share of the new pixels. Variances are means over pixels. The noise of `from` is read from
 /// its own account.
-void add_noise_of_kept(const Image& from, double share_anew, FrameNoise& noise);
+void add_noise_of_kept(const Image& from, const StillPixels& still, FrameNoise& noise);
 
 /// Reports the figures: in --stats, as lines with --verbose, as a warning if `asked` (FrameOptions::seen_error) was not
 /// reached, and as a warning for each biased layer (is_biased). object_names: the names in the scene's file, by

@@ -100,6 +100,12 @@ ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
   };
 }
 
+/// The shot's middle frame, if the plan decides whether frames keep its pixels; or null.
+const PlannedFrame* middle_for_pixels(const Plan& plan, const Wish& wish) {
+  const std::optional<int> middle = plan.middle();
+  return wish.method == FrameMethod::automatic && middle ? &plan.segment_of(*middle).at(*middle) : nullptr;
+}
+
 }  // namespace
 
 PlanFolder::PlanFolder(std::string path) : path_(std::move(path)), inputs_(path_ + "/state/inputs") {
@@ -170,7 +176,8 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
                       tool.history_line()};
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
-                   helper_frames(tool.common().frames, wish), wish.method == FrameMethod::still);
+                   helper_frames(tool.common().frames, wish),
+                   wish.method == FrameMethod::still || wish.method == FrameMethod::automatic);
   tool.stats().phase("pilots", true);
   decide_segments(tool, wish, camera, folder);
   tool.stats().phase("graph");
@@ -198,8 +205,13 @@ void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFold
     const auto measured = wish.measured.find(segment.first);
     const bool is_measured = measured != wish.measured.end();
     if (is_measured) own.photons = measured->second.photons;
-    segment.decisions = decided(segment, decision_key(segment, own, plan.media) + (shot ? shot_key : ""), [&] {
-      return decide(segment, own, plan.media, source, shot && !is_measured ? &*shot : nullptr);
+    const PlannedFrame* const middle = middle_for_pixels(plan, wish);
+    const std::string key = decision_key(segment, own, plan.media) + (shot ? shot_key : "") +
+                            (middle ? middle->light + middle->camera : "");
+    segment.decisions = decided(segment, key, [&] {
+      Decisions d = decide(segment, own, plan.media, source, shot && !is_measured ? &*shot : nullptr);
+      if (middle) decide_still(segment, *middle, plan.last_frame + 1, own, plan.media, source, d);
+      return d;
     });
     if (is_measured) segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
   }

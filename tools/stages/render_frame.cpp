@@ -82,9 +82,11 @@ std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& opt
 
 /// Decides which pixels keep those of the other moment. All others become the mask of `options`.
 StillPixels keep_pixels(Tool& tool, const LitFrame& now, const StillMoment& before, FrameOptions& options) {
-  StillPixels still = still_pixels(now.sampler(options.seed), before.moment().sampler(options.seed), options);
+  StillPixels still = still_pixels(now.sampler(options.seed), before.moment().sampler(options.seed), before.image(), options);
   options.mask = still.anew;
   tool.stats().set("sampled_anew", still.share_anew());
+  tool.stats().set("still.work", still.work);
+  tool.stats().set("still.samples_per_pixel", still.samples_per_pixel);
   return still;
 }
 
@@ -128,7 +130,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   StillPixels still;
   if (before) still = keep_pixels(tool, lit, *before, frame_options);
   RenderedFrame rendered = render_frame(scene, view, frame_options);
-  if (before) add_noise_of_kept(before->image(), still.share_anew(), rendered.noise);
+  if (before) add_noise_of_kept(before->image(), still, rendered.noise);
 
   const AuditedFrame made{scene, input.emission(frame.frame), view, frame_options, rendered, options.light_paths};
   add_light_without_paths(tool, options, made, rendered);
@@ -165,6 +167,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                 before ? KeptPixels{still.anew, before->image(), &still} : KeptPixels{base.mask, base.base});
   tool.stats().end_phase();
   rendered.rays += still.rays;
+  rendered.noise_rays += still.noise_rays;
   count_work(tool, rendered, lit.tracer());
   report_account(tool, rendered, audited, frame_options, input.scene().object_names, lit_by);
 }

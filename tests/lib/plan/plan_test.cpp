@@ -413,7 +413,11 @@ TEST(Graph, StillFramesTakePixelsFromTheMiddleWhileTheCameraStands) {
     EXPECT_NE(words.find(part), std::string::npos) << part << " in " << words;
   EXPECT_EQ(file_of(graph, "raw/0007").words.find("--still"), std::string::npos);
   EXPECT_NE(file_of(graph, "filtered/0004").words.find("still/0004-"), std::string::npos);
-  EXPECT_TRUE(names(graph_of(plan, records()), "still/").empty()) << "METHOD=frames";
+  wish.method = FrameMethod::automatic;
+  EXPECT_TRUE(names(graph_of(plan, records(), wish), "still/").empty()) << "METHOD=auto where it does not pay";
+  Decisions pays = records();
+  pays.still = true;
+  EXPECT_EQ(names(graph_of(plan, pays, wish), "still/").size(), 1u) << "METHOD=auto where it pays";
 }
 
 /// An interval is halved by what a viewer sees where pictures of its quality have more errors than allowed.
@@ -437,32 +441,6 @@ TEST(Graph, AnIntervalMayShowWhatItsQualityShows) {
       }
     EXPECT_GT(intervals, 0);
   }
-}
-
-/// The camera walks through two segments of four frames; warping pays in the first alone. Frame 4 is a key of 0 to 4
-/// with the channels of keys, and is shown with those of the wish: two filters read its raw picture, and either may
-/// come first.
-TEST(Graph, ARawPictureThatTwoCommandsReadIsRemovedByNeither) {
-  Scene scene = still_room();
-  slide(scene, kCamera, {0, 1, 2, 3, 4, 5, 6, 7});
-  Wish wish;
-  wish.method = FrameMethod::automatic;
-  wish.filter = 1;
-  wish.key_distance = 4;
-  Plan plan = plan_of(scene, {2, 4, 5}, 4, helper_frames({2, 4, 5}, wish));
-  plan.segments.at(0).decisions.walk = true;
-  const Graph graph = make_graph(plan, with_preset(wish), [](const std::string& tool) { return tool; }, {});
-  std::map<std::string, int> readers;
-  for (const GraphFile& file : graph.files)
-    for (const std::string& input : file.inputs) ++readers[input];
-  EXPECT_EQ(readers.at(file_of(graph, "raw/0004").name), 2);
-  EXPECT_FALSE(file_of(graph, "raw/0004").passing);
-  EXPECT_EQ(readers.at(file_of(graph, "raw/0005").name), 1);
-  EXPECT_TRUE(file_of(graph, "raw/0005").passing);
-  const std::string text = plan_makefile(plan, graph, [](const std::string& tool) { return tool; });
-  const std::size_t list = text.find("passing :=");
-  ASSERT_NE(list, std::string::npos);
-  EXPECT_EQ(text.substr(list, text.find('\n', list) - list).find("raw/0004"), std::string::npos);
 }
 
 /// Frames 0 to 3 of eight, with windows of three: picture 3 is also in the window of frame 4, which is not asked for.

@@ -17,8 +17,8 @@ using test::Lit;
 
 StillPixels compared(const RenderScene& now, const RenderScene& before, const CameraView& view,
                      const FrameOptions& options, const KnownLight* known = nullptr,
-                     const KnownLight* known_before = nullptr) {
-  return still_pixels({now, view, known, options.seed}, {before, view, known_before, options.seed}, options);
+                     const KnownLight* known_before = nullptr, const Image& base = {}) {
+  return still_pixels({now, view, known, options.seed}, {before, view, known_before, options.seed}, base, options);
 }
 
 FrameOptions usual() {
@@ -33,7 +33,7 @@ TEST(StillPixels, NothingChangesAtOneMoment) {
   const Cornell c;
   const StillPixels still = compared(c.render_scene(), c.render_scene(), c.view, usual());
   EXPECT_EQ(still.share_anew(), 0);
-  for (const Layers& change : still.change) EXPECT_EQ(radiance_of(change), 0);
+  for (const Layers& change : still.change.pixels) EXPECT_EQ(radiance_of(change), 0);
 }
 
 /// A screen that fills the view shines with 3 W/m^2/sr, before with 1. The camera sees it directly, so each sample
@@ -87,7 +87,7 @@ TEST(StillPixels, KeptPixelsHaveTheLightOfTheirMoment) {
     double error = 0;
     for (std::size_t p = 0; p < still.anew.size(); ++p) {
       if (still.anew[p]) continue;
-      error += radiance_of(base.mean.pixels[p]) + radiance_of(still.change[p]) - radiance_of(right.mean.pixels[p]);
+      error += radiance_of(base.mean.pixels[p]) + radiance_of(still.change.pixels[p]) - radiance_of(right.mean.pixels[p]);
     }
     errors.push_back(error / double(still.anew.size()));
     kept_share += (1 - still.share_anew()) / kSeeds;
@@ -128,7 +128,7 @@ TEST(StillPixels, ASmallChangeOfNoisyLightIsKnownWell) {
     EXPECT_LT(still.share_anew(), 0.5);
     double change = 0, light = 0;
     for (std::size_t p = 0; p < still.anew.size(); ++p)
-      if (!still.anew[p]) change += radiance_of(still.change[p]), light += radiance_of(base.mean.pixels[p]);
+      if (!still.anew[p]) change += radiance_of(still.change.pixels[p]), light += radiance_of(base.mean.pixels[p]);
     ratios.push_back(change / light);
   }
   double mean = 0, square = 0;
