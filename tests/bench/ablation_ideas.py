@@ -28,10 +28,10 @@ IDEAS = (
     # ---- numbers of samples
     Idea("parts apart", "light samples, rays onward and camera rays have numbers of their own", "frames",
          (("lib/render/adaptive_frame.cpp",
-           "const PartCounts more = missing(have, noise_.wanted_at(x, y, times));",
+           "const PartCounts more = missing_samples(have, noise_.wanted_at(x, y, times));",
            "PartCounts all = noise_.wanted_at(x, y, times);\n"
            "    all.own = all.lit = all.onward = std::max({all.own, all.lit, all.onward});\n"
-           "    const PartCounts more = missing(have, all);"),)),
+           "    const PartCounts more = missing_samples(have, all);"),)),
     Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
     # Stays whatever codes say: without it filtered frames have blotches (docs/notebook/outliers.md).
