@@ -9,6 +9,10 @@
 namespace tempolux {
 namespace {
 
+/// Squared error of a density by k photons times k / light^2: the photons differ in flux, and those near the rim of the
+/// density's disc count less. Measured in the caustic light of S8 and furnished_day: 2.4 and 2.3
+/// (docs/methods/ways.md).
+constexpr double kOfPhotons = 2.4;
 constexpr double kPhotonsOfAPlace = PhotonLightOptions{}.caustic_neighbours;
 /// Number of pixels over which the filter averages inside surfaces: it leaves .03 to .09 of the samples' squared error
 /// there (docs/notebook/st-filter.md).
@@ -57,7 +61,7 @@ double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t phot
   for (const CausticPart& part : rough.caustic) {
     const double by_pixel = part.photons * double(photons) / (pixels / kPilotParts);
     for (const double box : kSeenBoxes)
-      error += part.seen_square / (kPhotonsOfAPlace + by_pixel * (box * box - 1 + kFilterPixels));
+      error += kOfPhotons * part.seen_square / (kPhotonsOfAPlace + by_pixel * (box * box - 1 + kFilterPixels));
   }
   return error;
 }
@@ -65,10 +69,11 @@ double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t phot
 SpreadWork spread_work(const RoughFrame& rough, const AskedPicture& asked) {
   const Spread spread(rough, asked);
   SpreadWork best{1, asked.rays, asked.photons};
-  const double allowed = spread.error(best);
+  const double allowed = spread.error(best), fixed = asked.work - spread.work(best);
+  const auto product = [&](const SpreadWork& with) { return (fixed + spread.work(with)) * spread.error(with); };
   const auto consider = [&](const SpreadWork& other) {
     if (other.rays > 0 && other.rays < FinalGather::kDistanceRays) return;
-    if (spread.error(other) <= allowed && spread.work(other) < spread.work(best)) best = other;
+    if (spread.error(other) <= allowed && product(other) < product(best)) best = other;
   };
   for (std::uint64_t photons = asked.photons; photons > 0 && spread.allows(photons); photons *= 2)
     for (int step = 0; step <= kShares && (step == 0 || asked.samples * share_of(step) >= kFewestSamples); ++step)

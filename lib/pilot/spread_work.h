@@ -11,7 +11,7 @@ namespace tempolux {
 
 /// Squared error of caustic light that the density of a map of `photons` light paths estimates, as it is seen in a
 /// filtered picture of `pixels` pixels: the sum over boxes of a = 1, 25 and 225 pixels of
-///     light^2 / (k + d (a - 1 + g)),     d: photons per pixel.
+///     2.4 light^2 / (k + d (a - 1 + g)),     d: photons per pixel.
 /// About k = 25 photons light a pixel, however many photons the map has. The mean over a box also averages the photons
 /// of the box, and the filter averages g = 16 pixels. Without light the error is 0.
 double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t photons);
@@ -51,7 +51,8 @@ struct SpreadWork {
   std::uint64_t photons = 0;
 };
 
-/// The numbers with the least work whose seen error is at most that of `asked`. The share s of the samples is 2^(-i/4);
+/// The numbers with the least product of the picture's work and its seen error, among those that leave at most the seen
+/// error of `asked`. The share s of the samples is 2^(-i/4);
 /// it is at least 1/8 and leaves at least 4 samples a pixel. Light paths are doubled; rays are halved, doubled or
 /// quadrupled. The seen error is
 ///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays      (Seen).

@@ -34,32 +34,43 @@ AskedPicture asked(double sample_error) {
           .work = 1e8};
 }
 
-/// 400 pixels hold 400 d photons. Single pixels err by 25 / (25 + 16 d), boxes of 5 and 15 pixels by 25 / (25 + 40 d)
-/// and 25 / (25 + 240 d). Without photons in sight all three err by 1.
+/// 400 pixels hold 400 d photons. Single pixels err by 2.4 x 25 / (25 + 16 d), boxes of 5 and 15 pixels by 2.4 x 25 /
+/// (25 + 40 d) and 2.4 x 25 / (25 + 240 d). Without photons in sight all three err by 2.4.
 TEST(SeenMapError, FallsWithThePhotonsOfABox) {
   const double d = 2, paths = 1e6;
-  EXPECT_NEAR(seen_map_error(lit(d * kPartPixels / paths), kPixels, 1'000'000), 25.0 / 57 + 25.0 / 105 + 25.0 / 505,
-              1e-12);
-  EXPECT_NEAR(seen_map_error(lit(0), kPixels, 1'000'000), 3, 1e-12);
+  EXPECT_NEAR(seen_map_error(lit(d * kPartPixels / paths), kPixels, 1'000'000),
+              2.4 * (25.0 / 57 + 25.0 / 105 + 25.0 / 505), 1e-12);
+  EXPECT_NEAR(seen_map_error(lit(0), kPixels, 1'000'000), 2.4 * 3, 1e-12);
   EXPECT_EQ(seen_map_error(RoughFrame{}, kPixels, 1'000'000), 0);
 }
 
-/// Photons are cheap and caustic light has most of the error: more photons, fewer samples, less work at no more error.
-/// Error and work are those of the header, written once more. Meant to catch: work compared before the error.
-TEST(SpreadWork, TradesSamplesForPhotonsAtTheSameError) {
+/// Photons are cheap and caustic light has most of the error: more photons, and no more error than before. No
+/// neighbouring numbers have a smaller product of the picture's work and error. Both are those of the header, written
+/// once more. Meant to catch: the least work at an equal error, which leaves the error of caustic light as it is.
+TEST(SpreadWork, TakesTheLeastProductOfWorkAndError) {
   const RoughFrame rough = lit(0.01 * kPartPixels / 700'000);
-  const AskedPicture picture = asked(2);
+  AskedPicture picture = asked(2);
   const SpreadWork spread = spread_work(rough, picture);
   EXPECT_GT(spread.photons, picture.photons);
-  EXPECT_LT(spread.samples, 1);
+  EXPECT_EQ(spread.rays, 0);
   const double of_samples = 1.24 * 2 * std::pow(64, 1 - stratified_rate());
   const auto error = [&](double share, std::uint64_t photons) {
     return of_samples * std::pow(share, -0.75) + seen_map_error(rough, kPixels, photons);
   };
+  const auto product = [&](double share, std::uint64_t photons) {
+    const double further = double(photons) - 700'000, a_path = 0.6 * (1 + rough.photons_per_path);
+    const double work = kPixels * 20 * 64 * (share - 1) + further * (a_path / 24 + 2 * rough.photons_per_path);
+    return (picture.work + work) * error(share, photons);
+  };
+  const double best = product(spread.samples, spread.photons);
   EXPECT_LE(error(spread.samples, spread.photons), error(1, picture.photons));
-  EXPECT_GT(error(spread.samples * std::exp2(-0.25), spread.photons), error(1, picture.photons))
-      << "the next share would err more";
-  EXPECT_EQ(spread.rays, 0);
+  for (const std::uint64_t photons : {spread.photons / 2, spread.photons, 2 * spread.photons})
+    for (const double times : {std::exp2(-0.25), 1.0, std::exp2(0.25)}) {
+      const double share = spread.samples * times;
+      if (photons < 700'000 || photons > 11'200'000 || share > 1 || share < 0.124) continue;
+      if (error(share, photons) > error(1, 700'000)) continue;
+      EXPECT_GE(product(share, photons), best * (1 - 1e-9)) << times << " " << photons;
+    }
 }
 
 /// Nothing to trade: without caustic light, or if the map may not grow, all numbers stay.
