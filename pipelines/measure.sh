@@ -53,6 +53,7 @@ segment() {   # segment FIRST LAST: adds its line to the table
   frame=$(sed -n 's/^frames := //p' "$OUT/plan.mk" | tr ' ' '\n' | sed 's|^frames/0*\([0-9]\)|\1|; s|[.]exr$||' |
     awk -v a="$1" -v b="$2" '$1 >= a && $1 <= b { d = $1 - int((a + b) / 2); d = d < 0 ? -d : d
                                                   if (best == "" || d < least) { best = $1; least = d } } END { print best }')
+  [ -n "$frame" ] || return 0   # the segment only holds the frame that gives the pixels that stay
   tried=
   if [ "$METHOD" = preview ] && [ -z "$PHOTONS" ]; then
     n=$least one=1 two=2 best=101 worse=0

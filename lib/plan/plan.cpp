@@ -240,7 +240,9 @@ void add_middle(Plan& plan) {
   const bool seen = std::ranges::any_of(plan.segments, [&](const PlannedSegment& segment) {
     return std::ranges::find(segment.frames, camera, &PlannedFrame::camera) != segment.frames.end();
   });
-  if (seen) plan.segments.insert(std::ranges::lower_bound(plan.segments, middle, {}, &PlannedSegment::first), *piece);
+  if (!seen) return;
+  const auto place = std::ranges::lower_bound(plan.segments, middle, {}, &PlannedSegment::first);
+  plan.segments.insert(place, *piece)->only_pixels = true;
 }
 
 /// The different values of a member, ascending; with `lit` only in that state of light.

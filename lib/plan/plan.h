@@ -43,6 +43,7 @@ struct PlannedSegment {
   std::string frozen;           ///< hash of everything that is fixed over the segment: emission table, bounds, origin
   std::vector<MovingNode> moves;
   std::vector<PlannedFrame> frames;  ///< all frames of the segment, ascending
+  bool only_pixels = false;          ///< true: no frame of it was asked for, it holds the middle frame (make_plan)
   MaterialFacts materials;           ///< lobes of the materials, over all frames
   Decisions decisions;
 

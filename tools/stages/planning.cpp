@@ -199,13 +199,13 @@ void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFold
   std::optional<Decisions> shot;
   if (plan.shot.size() > 1)
     shot = decided(plan.shot.front(), shot_key, [&] { return decide_shot(plan.shot, wish, plan.media, source); });
-  for (PlannedSegment& segment : plan.segments) {
+  const PlannedFrame* const middle = middle_for_pixels(plan, wish);
+  const auto decide_about = [&](PlannedSegment& segment) {
     tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
     Wish own = wish;
     const auto measured = wish.measured.find(segment.first);
     const bool is_measured = measured != wish.measured.end();
     if (is_measured) own.photons = measured->second.photons;
-    const PlannedFrame* const middle = middle_for_pixels(plan, wish);
     const std::string key = decision_key(segment, own, plan.media) + (shot ? shot_key : "") +
                             (middle ? middle->light + middle->camera : "");
     segment.decisions = decided(segment, key, [&] {
@@ -214,7 +214,14 @@ void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFold
       return d;
     });
     if (is_measured) segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
-  }
+  };
+  for (PlannedSegment& segment : plan.segments)
+    if (!segment.only_pixels) decide_about(segment);
+  const auto keeps = [&](const PlannedSegment& segment) { return segment.decisions.still || !middle; };
+  if (std::ranges::none_of(plan.segments, keeps))
+    std::erase_if(plan.segments, [](const PlannedSegment& segment) { return segment.only_pixels; });
+  for (PlannedSegment& segment : plan.segments)
+    if (segment.only_pixels) decide_about(segment);
 }
 
 void Planner::note_inputs(Inputs& inputs) const {
