@@ -1,6 +1,7 @@
 // lib/plan/light_files.cpp -- the files that light frames: photons, irradiance points, records, light textures.
 #include <algorithm>
 #include <array>
+#include <set>
 #include <sstream>
 
 #include "formats/hash.h"
@@ -105,13 +106,25 @@ std::vector<int> together(const GraphBuilder& g, int frame) {
           pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
 }
 
+/// Those of `pictures` whose pinhole cameras differ: the first of each.
+std::vector<int> different_cameras(const GraphBuilder& g, const std::vector<int>& pictures) {
+  std::set<std::string> seen;
+  std::vector<int> different;
+  for (const int picture : pictures)
+    if (seen.insert(g.state(picture).pinhole).second) different.push_back(picture);
+  return different;
+}
+
+/// The records of the static scene for the cameras of a block of pictures. As with other static light, the key leaves
+/// out numbers of frames: while the camera stands, segments with equal static scenes share the file.
 std::string static_records(GraphBuilder& g, int frame) {
-  const std::vector<int> pictures = together(g, frame);
-  Command c{
-      "--frames " + joined(pictures) + " --map static", {}, static_light(g, frame).content + g.pinholes(pictures)};
+  const std::vector<int> pictures = different_cameras(g, together(g, frame));
+  Command c = static_light(g, frame);
+  c.state_words = " --frames " + joined(pictures);
+  c.content += g.pinholes(pictures);
   c.file("--points", static_points(g, frame));
   c.option(record_words(g, frame));
-  return g.add(stage_in("stands_cache"), pictures.front(), c);
+  return g.add(stage_in("stands_cache"), pictures.size() == 1 ? kAnyFrame : pictures.front(), c);
 }
 
 /// The state of light of the previous frame; `lit` itself at the first frame of the segment.
