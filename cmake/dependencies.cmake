@@ -10,9 +10,10 @@ find_package(CLI11 CONFIG REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(PNG REQUIRED)
-find_package(draco CONFIG REQUIRED)          # these three are linked by the helper tempolux-decode alone
+find_package(draco CONFIG REQUIRED)          # these four are linked by the helper tempolux-decode alone
 find_package(meshoptimizer CONFIG REQUIRED)
 find_library(WEBP_LIBRARY NAMES webp REQUIRED)
+find_library(AVIF_LIBRARY NAMES avif REQUIRED)
 find_library(FFTWF_LIBRARY NAMES fftw3f REQUIRED)   # linked by the module tempolux-fourier alone
 find_package(JPEG REQUIRED)
 find_package(Threads REQUIRED)

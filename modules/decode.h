@@ -1,4 +1,4 @@
-// modules/decode.h -- the three decoders of tempolux-decode, one file each. lib/core/unpack.h explains their settings.
+// modules/decode.h -- the four decoders of tempolux-decode, one file each. lib/core/unpack.h explains their settings.
 #pragma once
 
 #include <cstdint>
@@ -15,5 +15,6 @@ using Decode = std::string(std::span<const std::uint32_t> settings, std::span<co
 Decode decode_draco;
 Decode decode_meshopt;
 Decode decode_webp;
+Decode decode_avif;
 
 }  // namespace tempolux

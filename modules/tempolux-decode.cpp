@@ -1,5 +1,6 @@
-// modules/tempolux-decode.cpp -- a child program that decodes Draco, meshoptimizer or WebP data. lib/core/unpack.cpp
-// starts it under limits of memory and time; lib/core/unpack.h describes its input and output. Users do not call it.
+// modules/tempolux-decode.cpp -- a child program that decodes Draco, meshoptimizer, WebP or AVIF data.
+// lib/core/unpack.cpp starts it under limits of memory and time; lib/core/unpack.h describes its input and output.
+// Users do not call it.
 #include <unistd.h>
 
 #include <algorithm>
@@ -67,6 +68,7 @@ std::string decode(Piece& piece) {
     case Packer::draco: return decode_draco(piece.settings, piece.packed, piece.unpacked);
     case Packer::meshopt: return decode_meshopt(piece.settings, piece.packed, piece.unpacked);
     case Packer::webp: return decode_webp(piece.settings, piece.packed, piece.unpacked);
+    case Packer::avif: return decode_avif(piece.settings, piece.packed, piece.unpacked);
   }
   return "does not know what packed this data";
 }

@@ -1,8 +1,8 @@
 # build.mk -- building, testing, installing: goals of Makefile.example that need no scene. build.md is its page.
 PACKAGES = g++ cmake ninja-build ccache pkg-config libembree-dev libopenexr-dev libopenimageio-dev libtinygltf-dev \
   libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev libnanoflann-dev libxxhash-dev libpng-dev \
-  libjpeg62-turbo-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libopenvdb-dev libboost-iostreams-dev \
-  libseccomp-dev libfftw3-dev gnuplot-nox python3 git make
+  libjpeg62-turbo-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libavif-dev libopenvdb-dev \
+  libboost-iostreams-dev libseccomp-dev libfftw3-dev gnuplot-nox python3 git make
 INSTALL = apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $(PACKAGES)
 deps: # installs missing packages on Debian, by root only; elsewhere provide them yourself
 	@command -v dpkg-query > /dev/null || exit 0; \

@@ -4,7 +4,7 @@ bad=0
 forbid() {  # folder, pattern of an #include it must not have, reason
   if grep -rnE --include='*.h' --include='*.cpp' "^ *#include [<\"]($2)" "$1" 2>/dev/null; then echo "^ $1: $3"; bad=1; fi
 }
-third='CLI/|OpenEXR/|Imf|Imath|OpenImageIO/|openvdb/|embree|tiny_gltf|nlohmann/|tbb/|png.h|jpeglib.h|draco/|meshoptimizer|webp/|seccomp|fftw3'
+third='CLI/|OpenEXR/|Imf|Imath|OpenImageIO/|openvdb/|embree|tiny_gltf|nlohmann/|tbb/|png.h|jpeglib.h|draco/|meshoptimizer|webp/|avif/|seccomp|fftw3'
 forbid formats "lib/|tools/|$third" 'formats needs the standard library and xxhash only'
 forbid lib 'tools/|CLI/|iostream' 'lib has no command line and prints nothing'
 forbid modules 'tools/|CLI/' 'a module knows no tool'
@@ -44,7 +44,7 @@ for folder in lib/*/; do
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
 # each third-party header in one file of the tree (tests and benchmarks apart)
-for header in embree3/ OpenEXR/ OpenImageIO/ openvdb/ png.h jpeglib.h tiny_gltf nlohmann/json.hpp CLI/ draco/ meshoptimizer webp/ seccomp.h fftw3 xxhash; do
+for header in embree3/ OpenEXR/ OpenImageIO/ openvdb/ png.h jpeglib.h tiny_gltf nlohmann/json.hpp CLI/ draco/ meshoptimizer webp/ avif/ seccomp.h fftw3 xxhash; do
   files=$(grep -rlE --include='*.h' --include='*.cpp' "^ *#include [<\"]$header" formats lib tools modules 2>/dev/null)
   [ "$(echo "$files" | grep -c .)" -le 1 ] || { echo "$header is included by more than one file:" $files; bad=1; }
 done

@@ -1,4 +1,4 @@
-// lib/core/unpack.h -- unpacks data packed by Draco, meshoptimizer or WebP, in the child program tempolux-decode.
+// lib/core/unpack.h -- unpacks data packed by Draco, meshoptimizer, WebP or AVIF, in the child program tempolux-decode.
 //
 // libdraco reads beyond its input on damaged files (google/draco pull request 1214), so none of these libraries runs in
 // this process. The child's output is untrusted like the bytes of any file: its readers check it.
@@ -22,6 +22,8 @@ enum class Packer : std::uint32_t {
   /// Settings: width and height in pixels, number of channels (3: R, G, B; 4: also alpha). Unpacked: 8 bits per
   /// channel, the top row first.
   webp = 3,
+  /// Settings and unpacked data as for WebP, always with 4 channels; depths above 8 bits are rounded to 8.
+  avif = 4,
 };
 enum class MeshoptMode : std::uint32_t { attributes, triangles, indices };
 enum class MeshoptFilter : std::uint32_t { none, octahedral, quaternion, exponential };

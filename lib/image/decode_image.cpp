@@ -9,7 +9,9 @@
 namespace tempolux {
 namespace {
 
-CodedPixels decode_webp(const EncodedImage& image, const ImageHeader& header, std::uint64_t max_pixels) {
+/// Decodes in a child process.
+CodedPixels decode_packed(Packer packer, int channels, const EncodedImage& image, const ImageHeader& header,
+                          std::uint64_t max_pixels) {
   const std::uint64_t count = std::uint64_t(header.width) * std::uint64_t(header.height);
   if (count > max_pixels)
     throw InputError(image.place + ": " + std::to_string(header.width) + "x" + std::to_string(header.height) +
@@ -17,9 +19,9 @@ CodedPixels decode_webp(const EncodedImage& image, const ImageHeader& header, st
   CodedPixels pixels;
   pixels.width = header.width;
   pixels.height = header.height;
-  pixels.channels = header.has_alpha ? 4 : 3;
+  pixels.channels = channels;
   PackedPiece piece;
-  piece.packer = Packer::webp;
+  piece.packer = packer;
   piece.settings = {std::uint32_t(pixels.width), std::uint32_t(pixels.height), std::uint32_t(pixels.channels)};
   piece.bytes = image.bytes;
   piece.unpacked_bytes = count * std::uint64_t(pixels.channels);
@@ -33,7 +35,9 @@ CodedPixels decode_webp(const EncodedImage& image, const ImageHeader& header, st
 
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels) {
   const ImageHeader header = read_image_header(image.bytes, image.place);
-  if (header.format == ImageHeader::Format::webp) return decode_webp(image, header, max_pixels);
+  if (header.format == ImageHeader::Format::webp)
+    return decode_packed(Packer::webp, header.has_alpha ? 4 : 3, image, header, max_pixels);
+  if (header.format == ImageHeader::Format::avif) return decode_packed(Packer::avif, 4, image, header, max_pixels);
   CodedPixels pixels = header.format == ImageHeader::Format::png ? decode_png(image.bytes, image.place, max_pixels)
                                                                  : decode_jpeg(image.bytes, image.place, max_pixels);
   if (pixels.width != header.width || pixels.height != header.height)

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "formats/error.h"
+#include "lib/image/avif_header.h"
 
 namespace tempolux {
 namespace {
@@ -87,6 +88,8 @@ bool webp_size(Bytes bytes, ImageHeader& header) {
   return true;
 }
 
+constexpr std::array kNames{"PNG", "JPEG", "WebP", "AVIF"};  // of ImageHeader::Format
+
 struct OtherFormat {
   std::string_view head;
   const char* name;
@@ -115,17 +118,26 @@ ImageHeader read_image_header(Bytes bytes, const std::string& place) {
   } else if (starts_with(bytes, "RIFF"sv) && starts_with(bytes, "WEBP"sv, 8)) {
     header.format = ImageHeader::Format::webp;
     found = webp_size(bytes, header);
+  } else if (has_brand_of_avif(bytes)) {
+    header.format = ImageHeader::Format::avif;
+    if (const std::optional<AvifHeader> avif = read_avif_header(bytes)) {
+      if (avif->is_transformed)
+        fail("the AVIF is turned, mirrored or cropped when it is shown; save it as it is shown");
+      header.width = avif->width;
+      header.height = avif->height;
+      found = true;
+    }
   } else {
     for (const OtherFormat& other : kOtherFormats)
       if (starts_with(bytes, other.head))
-        fail(std::string("is ") + other.name + "; textures must be PNG, JPEG or WebP: convert it");
-    fail("is neither PNG nor JPEG nor WebP; textures must be one of them");
+        fail(std::string("is ") + other.name + "; textures must be PNG, JPEG, WebP or AVIF: convert it");
+    if (is_media_file(bytes))
+      fail("is HEIC, MP4 or a damaged AVIF; textures must be PNG, JPEG, WebP or AVIF: convert it");
+    fail("is neither PNG nor JPEG nor WebP nor AVIF; textures must be one of them");
   }
-  const char* name = header.format == ImageHeader::Format::png    ? "PNG"
-                     : header.format == ImageHeader::Format::jpeg ? "JPEG"
-                                                                  : "WebP";
-  if (!found) fail(std::string("no size in its header; the ") + name + " is damaged or cut short");
-  if (header.width < 1 || header.height < 1) fail(std::string("a ") + name + " without pixels");
+  const std::string name = kNames[std::size_t(header.format)];
+  if (!found) fail("no size in its header; the " + name + " is damaged or cut short");
+  if (header.width < 1 || header.height < 1) fail("the " + name + " has no pixels");
   return header;
 }
 

@@ -1,4 +1,5 @@
-// lib/image/encoded_image.h -- PNG, JPEG and WebP files in memory: reads their size without decoding, and decodes them.
+// lib/image/encoded_image.h -- PNG, JPEG, WebP and AVIF files in memory: reads their size without decoding, and decodes
+// them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@ namespace tempolux {
 
 struct SpecularGlossiness;  // specular_glossiness.h
 
-/// A PNG, JPEG or WebP file in memory, not decoded; or an image that is made from such files.
+/// A PNG, JPEG, WebP or AVIF file in memory, not decoded; or an image that is made from such files.
 struct EncodedImage {
   std::string place;  ///< source of the bytes, for messages
   std::vector<unsigned char> bytes;
@@ -23,15 +24,15 @@ struct EncodedImage {
 
 /// Format and size of an encoded image.
 struct ImageHeader {
-  enum class Format { png, jpeg, webp };
+  enum class Format { png, jpeg, webp, avif };
   Format format = Format::png;
   int width = 0, height = 0;  ///< px, at least 1
   bool has_alpha = false;     ///< of a WebP
   bool four_inks = false;     ///< of a JPEG: CMYK or YCCK
 };
 
-/// Format and size of a PNG, JPEG or WebP file from its first bytes, without decoding or allocating. Throws InputError
-/// "PLACE: ..." for other formats (naming the known ones) and for a damaged header.
+/// Format and size of a PNG, JPEG, WebP or AVIF file from its first bytes, without decoding or allocating. Throws
+/// InputError "PLACE: ..." for other formats (naming the known ones) and for a damaged header.
 ImageHeader read_image_header(std::span<const unsigned char> bytes, const std::string& place);
 
 /// The codes of an image's pixels as in the file; row 0 on top, channels of a pixel together.
@@ -43,8 +44,8 @@ struct CodedPixels {
 };
 
 /// Decodes an image. What the file says about its colour space (gAMA, iCCP, ...) is ignored: in glTF 2.0, 3.8.2, the
-/// texture decides. A child process decodes WebP (lib/core/unpack.h). Throws InputError "PLACE: ..." if the file is
-/// damaged or truncated, or has more than max_pixels or another size than its header says.
+/// texture decides. A child process decodes WebP and AVIF (lib/core/unpack.h). Throws InputError "PLACE: ..." if the
+/// file is damaged or truncated, or has more than max_pixels or another size than its header says.
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels);
 
 }  // namespace tempolux

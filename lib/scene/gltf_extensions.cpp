@@ -15,16 +15,14 @@ struct Extension {
   bool is_of_textures = false;  ///< stores images in its own format, which this program does not decode
 };
 
-// The remedies name commands that unpack. `gltf-transform cp` writes unpacked geometry; `gltf-transform png` converts
-// WebP only with --formats. gltfpack reads packed files from version 0.22 on.
-constexpr const char* kToPng = "convert its textures with `gltf-transform png IN.glb OUT.glb --formats '*'`";
+// The remedies name commands that unpack. `gltf-transform cp` writes unpacked geometry. gltfpack reads packed files
+// from version 0.22 on.
 constexpr std::array kExtensions{
     Extension{"KHR_draco_mesh_compression",
               "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression"},
     Extension{"EXT_meshopt_compression",
               "unpack it with `gltf-transform cp IN.glb OUT.glb` or `gltfpack -noq -kn -i IN.glb -o OUT.glb`"},
     Extension{"KHR_meshopt_compression", "unpack it with `gltfpack -noq -kn -i IN.glb -o OUT.glb`"},
-    Extension{"EXT_texture_avif", kToPng, true},
     Extension{"KHR_texture_basisu",
               "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb` (it calls ktx of KTX-Software)",
               true},
@@ -62,7 +60,9 @@ Use use_by_textures(const Json& document, const char* name) {
   for (std::size_t t = 0; t < textures.size(); ++t) {
     if (!has_extension(textures[t], name)) continue;
     use.used = true;
-    if (!textures[t].contains("source") && use.only.empty()) use.only = place_of("textures", t);
+    const bool has_other = textures[t].contains("source") || has_extension(textures[t], "EXT_texture_webp") ||
+                           has_extension(textures[t], "EXT_texture_avif");
+    if (!has_other && use.only.empty()) use.only = place_of("textures", t);
   }
   return use;
 }

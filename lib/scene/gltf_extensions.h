@@ -12,8 +12,8 @@ namespace tempolux::gltf {
 
 /// Throws InputError in two cases: the file requires an extension that is not in `known` and cannot be rendered without
 /// the extension; or an image exists only in the format of an unknown extension. The message names the extension, the
-/// place, and the command that makes a readable file. If the file also has the image as PNG or JPEG, `warnings` gets a
-/// line, and the extension goes to `handled`. Call after check_types() and before prune().
+/// place, and the command that makes a readable file. If the file also has the image in another format, `warnings` gets
+/// a line, and the extension goes to `handled`. Call after check_types() and before prune().
 void check_packing(const Json& document, const std::string& file, const std::set<std::string>& known,
                    std::set<std::string>& handled, std::vector<std::string>& warnings);
 

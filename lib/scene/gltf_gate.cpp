@@ -32,17 +32,11 @@ constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkB
 // Extensions that this program reads. Properties of them that it does not render cause warnings (gltf_material.cpp).
 /// The extensions that this program reads: those of materials by the table of their properties.
 const std::set<std::string> kKnown = [] {
-  std::set<std::string> known{"KHR_lights_punctual",
-                              "KHR_mesh_quantization",
-                              "KHR_texture_transform",
-                              "EXT_mesh_gpu_instancing",
-                              "KHR_animation_pointer",
-                              "EXT_texture_webp",
-                              "KHR_draco_mesh_compression",
-                              "EXT_meshopt_compression",
-                              "KHR_meshopt_compression",
-                              "KHR_node_visibility",
-                              "KHR_materials_pbrSpecularGlossiness"};
+  std::set<std::string> known{
+      "KHR_lights_punctual",     "KHR_mesh_quantization",      "KHR_texture_transform",
+      "EXT_mesh_gpu_instancing", "KHR_animation_pointer",      "EXT_texture_webp",
+      "EXT_texture_avif",        "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+      "KHR_meshopt_compression", "KHR_node_visibility",        "KHR_materials_pbrSpecularGlossiness"};
   for (const MaterialProperty& property : material_properties())
     if (const std::string_view name = extension_of(property.pointer); !name.empty()) known.emplace(name);
   return known;

@@ -212,7 +212,7 @@ const Rules kMeshopt{{"buffer", Type::index, kRequired},
                      {"mode", Type::string, kRequired},
                      {"count", Type::size, kRequired},
                      {"filter", Type::string}};
-const Rules kWebp{{"source", Type::index, kRequired}};
+const Rules kImageSource{{"source", Type::index, kRequired}};
 const Rules kRootExtensions{{"KHR_lights_punctual", Type::object, Need::optional, &kLights}};
 const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
                   {"extensionsUsed", Type::strings},
@@ -526,8 +526,8 @@ void check_draco(Json& extension, const std::string& place, const std::string& f
 void check_meshopt(Json& extension, const std::string& place, const std::string& file) {
   check_extension(extension, kMeshopt, place, file);
 }
-void check_webp(Json& extension, const std::string& place, const std::string& file) {
-  check_extension(extension, kWebp, place, file);
+void check_image_source(Json& extension, const std::string& place, const std::string& file) {
+  check_extension(extension, kImageSource, place, file);
 }
 
 void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,

@@ -56,10 +56,10 @@ void mend_cameras(Json& document, LeftOut& left_out);
 void mend_lights(Json& document, LeftOut& left_out);
 
 /// Checks the properties of an extension's object at `place` likewise: KHR_draco_mesh_compression of a primitive, EXT_
-/// or KHR_meshopt_compression of a bufferView, EXT_texture_webp of a texture.
+/// or KHR_meshopt_compression of a bufferView, EXT_texture_webp or EXT_texture_avif of a texture.
 void check_draco(Json& extension, const std::string& place, const std::string& file);
 void check_meshopt(Json& extension, const std::string& place, const std::string& file);
-void check_webp(Json& extension, const std::string& place, const std::string& file);
+void check_image_source(Json& extension, const std::string& place, const std::string& file);
 
 /// Removes all `extras` and all extensions whose name is not in `known`, since tinygltf needs 200 bytes for each of
 /// their values. The names of removed extensions go to `unknown`. Throws InputError if the known extensions hold more

@@ -162,8 +162,9 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
     texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
   }
   if (source.source < 0)
-    import.fail(texture_place,
-                "names no PNG, JPEG or WebP image; convert its textures with `gltf-transform png IN.glb OUT.glb`");
+    import.fail(
+        texture_place,
+        "names no PNG, JPEG, WebP or AVIF image; convert its textures with `gltf-transform png IN.glb OUT.glb`");
   if (std::size_t(source.source) >= import.gated->images.size()) {
     import.mend(texture_place + ".source",
                 "image " + std::to_string(source.source) + " does not exist; the texture is left out", 1);

@@ -220,14 +220,14 @@ bool takes_out(Json& object, const char* name) {
   return extensions != object.end() && extensions->erase(name) > 0;
 }
 
-void use_webp_images(Json& document, const std::string& path) {
+/// Makes the image of an extension the source of textures that have no other.
+void use_images_of(const char* name, Json& document, const std::string& path) {
   if (!document.contains("textures")) return;
-  constexpr const char* name = "EXT_texture_webp";
   for (std::size_t t = 0; t < document["textures"].size(); ++t) {
     Json& texture = document["textures"][t];
     if (!has_extension(texture, name)) continue;
     Json packed = texture["extensions"][name];
-    check_webp(packed, place_of("textures", t) + ".extensions." + name, path);
+    check_image_source(packed, place_of("textures", t) + ".extensions." + name, path);
     if (!texture.contains("source")) texture["source"] = packed["source"];
     takes_out(texture, name);
   }
@@ -246,7 +246,7 @@ void unpack_packed(Json& document, const std::string& path, const GltfOptions& o
       Json& primitive = document["meshes"][m]["primitives"][p];
       if (primitive_is_packed_only(document, primitive, name)) unpacking.add_primitive(m, p);
     }
-  use_webp_images(document, path);
+  for (const char* name : {"EXT_texture_webp", "EXT_texture_avif"}) use_images_of(name, document, path);
   unpacking.finish();
   if (document.contains("buffers"))  // packed files have buffers without bytes, which tinygltf must not open
     for (Json& buffer : document["buffers"])

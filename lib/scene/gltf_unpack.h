@@ -12,7 +12,8 @@ namespace tempolux::gltf {
 /// extensions. A child process unpacks (lib/core/unpack.h); it starts only if something is packed.
 /// - KHR_draco_mesh_compression: accessors of the primitive get a bufferView with plain values.
 /// - EXT_meshopt_compression, KHR_meshopt_compression: the bufferView points to unpacked bytes.
-/// - EXT_texture_webp: the texture's source is the WebP image, which is decoded at its first use like any other image.
+/// - EXT_texture_webp, EXT_texture_avif: a texture without a source gets this image as its source. It is decoded at its
+///   first use like any other image.
 /// The unpacked bytes become the last buffer, Gated::unpacked. They may be invalid like the bytes of any file, so
 /// check_accessors() must check them. Their size is limited to a thousand times the packed bytes plus 64 MB, and to
 /// max_file_bytes.

@@ -16,7 +16,7 @@ for tool in "$1"/*; do
     *) images='png|jpeg|openexr|imath';;
   esac
   if echo "$libraries" | grep -iE "lib($images)"; then echo "^ $tool links these: they belong into tempolux-images.so"; bad=1; fi
-  if echo "$libraries" | grep -iE 'lib(draco|meshoptimizer|webp)'; then echo "^ $tool links these: they belong into tempolux-decode"; bad=1; fi
+  if echo "$libraries" | grep -iE 'lib(draco|meshoptimizer|webp|avif)'; then echo "^ $tool links these: they belong into tempolux-decode"; bad=1; fi
   if echo "$libraries" | grep 'not found'; then echo "^ $tool cannot be started"; bad=1; fi
 done
 echo "$count tools looked at"

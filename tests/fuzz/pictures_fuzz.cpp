@@ -1,7 +1,8 @@
-// tests/fuzz/pictures_fuzz.cpp -- pictures by their first bytes: PNG, JPEG (as textures are decoded), Radiance, and
-// EXR, whose header is walked before OpenEXR sees the file, then its pixels.
+// tests/fuzz/pictures_fuzz.cpp -- pictures by their first bytes: PNG, JPEG, WebP, AVIF (as textures are decoded),
+// Radiance, and EXR, whose header is walked before OpenEXR sees the file, then its pixels.
 #include <algorithm>
 
+#include "lib/image/avif_header.h"
 #include "lib/image/encoded_image.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/hdr_io.h"
@@ -25,7 +26,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::expect_read_or_refused(path, decode);
   } else if (begins({0xff, 0xd8})) {
     fuzz::expect_read_or_refused(path, decode);
-  } else if (begins({'R', 'I', 'F', 'F'})) {
+  } else if (begins({'R', 'I', 'F', 'F'}) || is_media_file({data, size})) {
     fuzz::expect_read_or_refused(path, decode);
   } else if (begins({'#', '?'})) {
     fuzz::expect_read_or_refused(path, [&] { load_hdr(path, kMaxPixels); });

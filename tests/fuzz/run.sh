@@ -12,7 +12,7 @@ if [ "$1" = --one ]; then   # one target, built already
   folders="tests/fuzz/corpus/$target tests/formats/$target"
   case $target in
     gltf) folders="$folders tests/data/packed/scenes" ;;
-    pictures) folders="$folders tests/data/packed/webp" ;;
+    pictures) folders="$folders tests/data/packed/webp tests/data/packed/avif" ;;
   esac
   set --
   for folder in $folders; do [ -d "$folder" ] && set -- "$@" "$folder"; done

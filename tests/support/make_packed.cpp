@@ -1,5 +1,6 @@
 // make-packed FOLDER -- writes the test data tests/data/packed. In scenes/: a square packed by Draco, by meshopt, and
-// with a WebP as its colour. In webp/: that image. The fuzz replay changes these files byte by byte.
+// with a WebP or an AVIF as its colour. In webp/ and avif/: these images. The fuzz replay changes these files byte by
+// byte.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -16,7 +17,10 @@ int main(int argc, char** argv) {
   save("draco-lossless.glb", test::draco_square(), true);
   save("draco-11-bits.glb", test::draco_square(11), true);
   save("meshopt.gltf", test::meshopt_square(), false);
-  const std::string webp = test::webp_bytes(2, 2, 4, {255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 9, 9, 9, 9});
+  const std::vector<std::uint8_t> colours{255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 9, 9, 9, 9};
+  const std::string webp = test::webp_bytes(2, 2, 4, colours), avif = test::avif_bytes(2, 2, 4, colours);
   save("webp.glb", test::webp_square(webp), true);
+  save("avif.glb", test::avif_square(avif), true);
   std::ofstream(folder / "webp/colours.webp", std::ios::binary) << webp;
+  std::ofstream(folder / "avif/colours.avif", std::ios::binary) << avif;
 }

@@ -1,10 +1,12 @@
 #include "tests/support/packers.h"
 
+#include <avif/avif.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <meshoptimizer.h>
 #include <webp/encode.h>
 
+#include <memory>
 #include <stdexcept>
 
 namespace tempolux::test {
@@ -80,6 +82,43 @@ std::string webp_bytes(int width, int height, int channels, const std::vector<st
   const std::size_t count = encode(pixels.data(), width, height, width * channels, &bytes);
   std::string text(reinterpret_cast<const char*>(bytes), count);
   WebPFree(bytes);
+  return text;
+}
+
+std::string avif_bytes(int width, int height, int channels, const std::vector<std::uint8_t>& pixels,
+                       const AvifForm& form) {
+  const auto expect_ok = [](avifResult result) {
+    if (result != AVIF_RESULT_OK) throw std::runtime_error(avifResultToString(result));
+  };
+  const std::unique_ptr<avifImage, decltype(&avifImageDestroy)> image(
+      avifImageCreate(std::uint32_t(width), std::uint32_t(height), std::uint32_t(form.depth), AVIF_PIXEL_FORMAT_YUV444),
+      avifImageDestroy);
+  image->matrixCoefficients = form.as_rgb ? AVIF_MATRIX_COEFFICIENTS_IDENTITY : AVIF_MATRIX_COEFFICIENTS_BT601;
+  image->alphaPremultiplied = form.premultiplied ? AVIF_TRUE : AVIF_FALSE;
+  if (form.quarter_turns >= 0) {
+    image->transformFlags |= AVIF_TRANSFORM_IROT;
+    image->irot.angle = std::uint8_t(form.quarter_turns);
+  }
+  if (form.mirrored) image->transformFlags |= AVIF_TRANSFORM_IMIR;
+  std::vector<std::uint8_t> codes = pixels;
+  avifRGBImage rgb;
+  avifRGBImageSetDefaults(&rgb, image.get());
+  rgb.depth = 8;
+  rgb.format = channels == 4 ? AVIF_RGB_FORMAT_RGBA : AVIF_RGB_FORMAT_RGB;
+  rgb.pixels = codes.data();
+  rgb.rowBytes = std::uint32_t(width * channels);
+  expect_ok(avifImageRGBToYUV(image.get(), &rgb));
+  const std::unique_ptr<avifEncoder, decltype(&avifEncoderDestroy)> encoder(avifEncoderCreate(), avifEncoderDestroy);
+  encoder->speed = AVIF_SPEED_FASTEST;
+  encoder->minQuantizer = encoder->maxQuantizer = AVIF_QUANTIZER_LOSSLESS;
+  encoder->minQuantizerAlpha = encoder->maxQuantizerAlpha = AVIF_QUANTIZER_LOSSLESS;
+  for (int frame = 0; frame < form.frames; ++frame)
+    expect_ok(avifEncoderAddImage(encoder.get(), image.get(), 1,
+                                  form.frames == 1 ? AVIF_ADD_IMAGE_FLAG_SINGLE : AVIF_ADD_IMAGE_FLAG_NONE));
+  avifRWData bytes = AVIF_DATA_EMPTY;
+  expect_ok(avifEncoderFinish(encoder.get(), &bytes));
+  std::string text(reinterpret_cast<const char*>(bytes.data), bytes.size);
+  avifRWDataFree(&bytes);
   return text;
 }
 

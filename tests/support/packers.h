@@ -31,4 +31,17 @@ std::string octahedral_elements(const std::vector<float>& vectors);
 /// A lossless WebP of RGBA or RGB pixels, row 0 on top.
 std::string webp_bytes(int width, int height, int channels, const std::vector<std::uint8_t>& pixels);
 
+/// How an AVIF holds its picture.
+struct AvifForm {
+  bool as_rgb = true;          ///< green, blue and red as coded, without loss; false: brightness and colour (BT.601)
+  int depth = 8;               ///< bits of a channel in the file
+  bool premultiplied = false;  ///< the file's colours are multiplied by alpha
+  int quarter_turns = -1;      ///< viewers shall turn the picture; -1: the file does not speak of it
+  bool mirrored = false;       ///< viewers shall mirror it
+  int frames = 1;              ///< above 1: an animation
+};
+/// An AVIF of RGBA or RGB pixels, row 0 on top, with the finest quantisation.
+std::string avif_bytes(int width, int height, int channels, const std::vector<std::uint8_t>& pixels,
+                       const AvifForm& form = {});
+
 }  // namespace tempolux::test

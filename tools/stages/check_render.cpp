@@ -34,7 +34,7 @@ void check_still(const RenderOptions& options) {
 
 void check_output(const Tool& tool, const std::string& output) {
   tool.check_frame_output(output);
-  for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
+  for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp", ".avif"})
     if (output.ends_with(other))
       throw InputError("--output " + output +
                        ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");

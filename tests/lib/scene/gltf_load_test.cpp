@@ -63,7 +63,7 @@ TEST(GltfLoad, FoundFilesLoadOrSayWhatIsNotSupported) {
       refused.insert(entry.path().filename());
     }
   }
-  // Lamps without a mesh. Draco, meshopt and WebP are unpacked.
+  // Lamps without a mesh. Draco, meshopt, WebP and AVIF are unpacked.
   EXPECT_EQ(refused, std::set<std::string>{"four_spotlights.glb"});
   EXPECT_GE(loaded, 40);
 }

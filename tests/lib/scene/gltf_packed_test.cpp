@@ -1,13 +1,15 @@
-// Draco, meshopt and WebP: an unpacked scene equals the plain scene; damaged data is refused in one line.
+// Draco, meshopt, WebP and AVIF: an unpacked scene equals the plain scene; damaged data is refused in one line.
 #include "lib/core/unpack.h"
 #include "lib/image/texture_images.h"
 #include "lib/scene/scene_hash.h"
 #include "tests/lib/scene/packed_scene.h"
+#include "tests/support/png_bytes.h"
 #include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {
 
+using test::avif_square;
 using test::draco_square;
 using test::meshopt_square;
 using test::plain_square;
@@ -109,6 +111,31 @@ TEST(GltfPacked, OctahedralNormalsAreUnitAndNear) {
   }
 }
 
+TEST(GltfPacked, AvifTexturesAreDecodedWhenTheyAreLookedAt) {
+  const std::vector<std::uint8_t> codes = texels(4, 77);
+  const Scene scene = avif_square(test::avif_bytes(2, 2, 4, codes)).load();
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_EQ(scene.images->size(), 1u);
+  EXPECT_EQ(scene.images->encoded(0).width, 2);
+  EXPECT_EQ(scene.images->decoded_count(), 0u);
+  EXPECT_EQ(decode_image(scene.images->encoded(0), 1000).bytes, codes);
+  EXPECT_GT(scene.images->pyramid(0, TextureTransfer::linear).byte_count(), 0u);
+}
+
+// The plain image beside is the one that every viewer shows.
+TEST(GltfPacked, ATextureWithASourceReadsIt) {
+  for (GltfMaker maker : {avif_square("no AVIF"), webp_square("no WebP")}) {
+    const int view = test::add_view(maker, test::png_bytes(3, 1, 3, std::vector<std::uint8_t>(9)));
+    maker.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    maker.json["textures"][0]["source"] = 1;
+    maker.json.erase("extensionsRequired");
+    const Scene scene = maker.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    ASSERT_EQ(scene.images->size(), 1u);
+    EXPECT_EQ(scene.images->encoded(0).width, 3);
+  }
+}
+
 TEST(GltfPacked, WebpTexturesAreDecodedWhenTheyAreLookedAt) {
   for (const int channels : {3, 4}) {
     const std::vector<std::uint8_t> codes = texels(channels, 77);
@@ -148,6 +175,11 @@ TEST(GltfPacked, DamagedDataIsRefusedWithItsPlaceAndRemedy) {
         e.what(), "images[0]: tempolux-decode cannot decode it: it is damaged or cut short; convert it to PNG or JPEG");
   }
   EXPECT_CONTAINS(error_of(webp_square(webp.substr(0, 20))), "the WebP is damaged or cut short");
+  const std::string avif = test::avif_bytes(2, 2, 3, texels(3, 0));
+  EXPECT_CONTAINS(error_of(avif_square(avif.substr(0, 60))), "images[0]: no size in its header; the AVIF is damaged");
+  GltfMaker unnamed = avif_square(avif);
+  unnamed.json["textures"][0]["extensions"]["EXT_texture_avif"] = Json::object();
+  EXPECT_CONTAINS(error_of(unnamed), "textures[0].extensions.EXT_texture_avif.source: is missing");
 }
 
 TEST(GltfPacked, WhatTheAccessorsSayMustBeWhatIsPacked) {

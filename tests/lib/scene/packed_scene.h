@@ -94,16 +94,22 @@ inline GltfMaker meshopt_square(const std::string& name = "EXT_meshopt_compressi
   return maker;
 }
 
-/// The square with a WebP of 2 x 2 pixels as its colour.
-inline GltfMaker webp_square(const std::string& webp) {
+/// The square with an image as its colour that an extension lets textures have.
+inline GltfMaker square_with_image(const std::string& extension, const std::string& type, const std::string& image) {
   GltfMaker maker = plain_square();
-  const int view = add_view(maker, webp);
-  maker.json["images"] = {{{"bufferView", view}, {"mimeType", "image/webp"}}};
-  maker.json["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+  const int view = add_view(maker, image);
+  maker.json["images"] = {{{"bufferView", view}, {"mimeType", type}}};
+  maker.json["textures"] = {{{"extensions", {{extension, {{"source", 0}}}}}}};
   maker.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   maker.json["meshes"][0]["primitives"][0]["material"] = 0;
-  maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {"EXT_texture_webp"};
+  maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {extension};
   return maker;
+}
+inline GltfMaker webp_square(const std::string& webp) {
+  return square_with_image("EXT_texture_webp", "image/webp", webp);
+}
+inline GltfMaker avif_square(const std::string& avif) {
+  return square_with_image("EXT_texture_avif", "image/avif", avif);
 }
 
 }  // namespace tempolux::test
