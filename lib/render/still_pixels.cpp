@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "lib/core/parallel_each.h"
-#include "lib/image/channel_groups.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pixel_noise.h"
 #include "lib/render/pixels_around.h"
@@ -125,7 +124,7 @@ int place(int i, int count, int full) {
   return std::clamp(first + i % kPixelsOfPiece, 0, full - 1);
 }
 
-/// A comparison of two moments.
+/// A comparison of two moments: choose() first, then the others in their order.
 class Comparison {
  public:
   /// Compares the pixels of a frame at `pieces` (still_work).
@@ -207,7 +206,8 @@ class Comparison {
       if (kept_[pixel]) spread_strongest(pixel);
   }
 
-  /// Measures the noise of the change by taking the differences of some kept pixels a second time.
+  /// Measures the noise of the change by taking the differences of some kept pixels a second time. Stores the noise of
+  /// each pixel.
   void measure(const Image& base, std::uint64_t seed) {
     NoiseCheck check(view_, seed, kept_);
     const CameraSampler now = again(moments_.now, check.seed()), before = again(moments_.before, check.seed());
@@ -235,6 +235,10 @@ class Comparison {
           check.again(slot).own += shown.at(std::size_t(y) * std::size_t(width_) + std::size_t(x));
     still_.noise = check.measure(
         pixels, [&](std::size_t p) { return shown.at(p) + parts_[p].sum(); }, still_.change.stored_noise);
+    if (still_.change.sample_halves.empty()) return;
+    still_.noise_channels.width = width_, still_.noise_channels.height = height_;
+    add_variance_channels(still_.change, {"halves", "variance", "diffuse.variance"}, still_.noise_channels);
+    still_.change.sample_halves = {};  // half a kilobyte per pixel
   }
 
  private:
@@ -297,9 +301,8 @@ class Comparison {
   }
 
   const CameraView& view_;
-  int width_, height_;   ///< of the lattice
-  int step_x_, step_y_;  ///< pixels of the frame from one pixel of the lattice to the next one
-  bool onward_ = true;   ///< false: the part onward is left out
+  int width_, height_;
+  bool onward_ = true;  ///< false: the part onward is left out
   BothMoments moments_;
   const FrameOptions options_;
   PixelNoise change_noise_, plain_noise_;
@@ -334,57 +337,6 @@ StillPixels still_pixels(const CameraSampler& now, const CameraSampler& before, 
   comparison.put_together();
   comparison.measure(base, options.seed);
   return still;
-}
-
-namespace {
-
-/// Adds the noise and variance of the change to the channels that hold those of the kept pixels.
-void add_noise_of_change(const StillPixels& still, Image& image) {
-  if (still.change.sample_halves.empty()) return;
-  Image noise{image.width, image.height, {}, {}, {}, {}};
-  add_variance_channels(still.change, {"halves", "variance", "diffuse.variance"}, noise);
-  for (const Channel& channel : noise.channels) {
-    Channel* const to = channel.name == "halves.confirmed" ? nullptr : image.find(channel.name);
-    if (!to) continue;
-    parallel_each(still.anew.size(), 4096, [&](std::size_t p) {
-      if (!still.anew[p]) to->values[p] += channel.values[p];
-    });
-  }
-}
-
-}  // namespace
-
-void add_change(const StillPixels& still, Image& image) {
-  const auto values = [&](const std::string& name) -> float* {
-    Channel* channel = image.find(name);
-    return channel && channel->ids.empty() ? channel->values.data() : nullptr;
-  };
-  std::array<std::array<float*, 3>, kLayerCount> layers{};
-  std::array<float*, 3> sum{};
-  bool all = true;
-  for (std::size_t c = 0; c < 3; ++c) {
-    sum[c] = values(std::string(1, "RGB"[c]));
-    for (std::size_t l = 0; l < kLayerCount; ++l) {
-      layers[l][c] = values(std::string(kLayerNames[l]) + "." + "RGB"[c]);
-      all &= layers[l][c] != nullptr || l == std::size_t(Layer::volume);
-    }
-  }
-  float* const alpha = values("A");
-  parallel_each(still.anew.size(), 4096, [&](std::size_t p) {
-    if (still.anew[p]) return;
-    const Layers& change = still.change.pixels[p];
-    for (std::size_t c = 0; c < 3; ++c) {
-      float shown = 0;
-      for (std::size_t l = 0; l < kLayerCount; ++l) {
-        const float by = change.value[l][int(c)];
-        if (float* const to = layers[l][c]) to[p] = std::max(0.0f, to[p] + by), shown += to[p];
-        if (!all && sum[c]) sum[c][p] += by;
-      }
-      if (sum[c]) sum[c][p] = all ? shown : std::max(0.0f, sum[c][p]);
-    }
-    if (alpha) alpha[p] = std::clamp(alpha[p] + change.coverage, 0.0f, 1.0f);
-  });
-  add_noise_of_change(still, image);
 }
 
 }  // namespace tempolux

@@ -14,6 +14,7 @@ namespace tempolux {
 struct StillPixels {
   std::vector<std::uint8_t> anew;  ///< by pixel: 1 if the pixel must be sampled anew, 0 if it is kept
   LayerImage change;               ///< of kept pixels: radiance now minus radiance before; of the others: 0
+  Image noise_channels;            ///< noise and variance of the change (add_variance_channels); empty without halves
   FrameNoise noise;                ///< of the change, as the kept pixels show it
   RayCounts rays, noise_rays;
   double share_anew() const;     ///< share of the pixels that must be sampled anew

@@ -1,0 +1,58 @@
+// lib/render/still_image.cpp -- adds the change of kept pixels to an image.
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "lib/core/parallel_each.h"
+#include "lib/render/still_pixels.h"
+
+namespace tempolux {
+namespace {
+
+/// Adds the noise and variance of the change to the channels that hold those of the kept pixels.
+void add_noise_of_change(const StillPixels& still, Image& image) {
+  for (const Channel& channel : still.noise_channels.channels) {
+    Channel* const to = channel.name == "halves.confirmed" ? nullptr : image.find(channel.name);
+    if (!to) continue;
+    parallel_each(still.anew.size(), 4096, [&](std::size_t p) {
+      if (!still.anew[p]) to->values[p] += channel.values[p];
+    });
+  }
+}
+
+}  // namespace
+
+void add_change(const StillPixels& still, Image& image) {
+  const auto values = [&](const std::string& name) -> float* {
+    Channel* channel = image.find(name);
+    return channel && channel->ids.empty() ? channel->values.data() : nullptr;
+  };
+  std::array<std::array<float*, 3>, kLayerCount> layers{};
+  std::array<float*, 3> sum{};
+  bool all = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum[c] = values(std::string(1, "RGB"[c]));
+    for (std::size_t l = 0; l < kLayerCount; ++l) {
+      layers[l][c] = values(std::string(kLayerNames[l]) + "." + "RGB"[c]);
+      all &= layers[l][c] != nullptr || l == std::size_t(Layer::volume);
+    }
+  }
+  float* const alpha = values("A");
+  parallel_each(still.anew.size(), 4096, [&](std::size_t p) {
+    if (still.anew[p]) return;
+    const Layers& change = still.change.pixels[p];
+    for (std::size_t c = 0; c < 3; ++c) {
+      float shown = 0;
+      for (std::size_t l = 0; l < kLayerCount; ++l) {
+        const float by = change.value[l][int(c)];
+        if (float* const to = layers[l][c]) to[p] = std::max(0.0f, to[p] + by), shown += to[p];
+        if (!all && sum[c]) sum[c][p] += by;
+      }
+      if (sum[c]) sum[c][p] = all ? shown : std::max(0.0f, sum[c][p]);
+    }
+    if (alpha) alpha[p] = std::clamp(alpha[p] + change.coverage, 0.0f, 1.0f);
+  });
+  add_noise_of_change(still, image);
+}
+
+}  // namespace tempolux
