@@ -40,19 +40,22 @@ Layers part_of_mean(const PathParts& sample, const PartCounts& counts) {
 
 /// The sample of a pixel that changes its mean difference most.
 struct StrongestSample {
-  PathParts change;
-  double size = 0;  ///< |radiance| of the sample [W/m^2/sr]; parts with fewer samples count more
+  Layers change;    ///< its part of the mean, times the number of camera rays; parts with fewer samples count more
+  double size = 0;  ///< |radiance| of `change` [W/m^2/sr]
   void note(const PathParts& sample, const PartCounts& counts) {
-    const double of_sample = std::abs(radiance_of(part_of_mean(sample, counts))) * counts.own;
-    if (of_sample > size) *this = {sample, of_sample};
+    const Layers part = part_of_mean(sample, counts);
+    const double of_sample = std::abs(radiance_of(part)) * counts.own;
+    if (!(of_sample > size)) return;
+    change = {};
+    add(part, float(counts.own), change);
+    size = of_sample;
   }
-  /// Its part of the mean over `counts` samples, minus the mean part of the other samples.
-  Layers excess(const Layers& mean, const PartCounts& counts) const {
-    if (counts.own < 2 || !(size > 0)) return {};
-    const Layers one = part_of_mean(change, counts);
-    const float others = 1 / float(counts.own - 1);
-    Layers excess = one;  // minus the mean of the others, (mean - one) / (n - 1)
-    add(one, others, excess);
+  /// Its part of the mean over `count` samples, minus the mean part of the other samples.
+  Layers excess(const Layers& mean, int count) const {
+    Layers excess;
+    if (count < 2 || !(size > 0)) return excess;
+    const float others = 1 / float(count - 1);
+    add(change, (1 + others) / float(count), excess);  // minus the mean of the others, (mean - one) / (n - 1)
     add(mean, -others, excess);
     return excess;
   }
@@ -285,7 +288,7 @@ class Comparison {
   /// Spreads the excess of a pixel's strongest sample, if the pixel may not err by that much, evenly over it and the
   /// kept pixels around, so widely that none gets more than it may err, and at most as far as its samples are noticed.
   void spread_strongest(std::size_t pixel) {
-    const Layers excess = strongest_[pixel].excess(parts_[pixel].sum(), counts_[pixel]);
+    const Layers excess = strongest_[pixel].excess(parts_[pixel].sum(), counts_[pixel].own);
     const double size = std::abs(radiance_of(excess)), error = error_at(level_[pixel]);
     if (!(size > error)) return;
     std::vector<std::size_t> to;
