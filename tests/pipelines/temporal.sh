@@ -16,7 +16,8 @@ make_it() {
 }
 run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
-gathered() { grep -o 'gather-temporal final .*--frame [0-7] ' "$work/log" | sed 's/.*\([0-7]\) $/000\1/' | tr '\n' ' '; }
+# Two jobs may print their commands on one line.
+gathered() { sed 's/gather-temporal final /\n&/g' "$work/log" | grep -o 'gather-temporal final .*--frame [0-7] ' | sed 's/.*\([0-7]\) $/000\1/' | tr '\n' ' '; }
 
 cp $scene "$work/scene.glb"
 run SCENE="$work/scene.glb" MOVING=anew OUT="$work/anew"
