@@ -68,7 +68,10 @@ FrameWays FramePilot::look(int places, const LightSharing& sharing,
 PreviewPilot FramePilot::preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
 double FramePilot::kernel() { return pilot_kernel({tracer_, aimed()}, kinds_, 0); }
 SplitChoice FramePilot::split() { return choose_split(pilot_split({tracer_, lights_}, view_, 0)); }
-MovingPilot FramePilot::moving() { return pilot_moving({tracer_, lights_}, table_, view_, 0); }
+MovingPilot FramePilot::moving() {
+  const Lights& lights = aimed();  // a lamp that moves may get most of the light paths
+  return pilot_moving({tracer_, lights}, *aimed_table_, view_, 0);
+}
 
 double FramePilot::still_work(const FramePilot& before, const Decisions& d) const {
   const CameraView pieces(view_.camera(), frame_.origin, std::min(kStillWidth, wish_.width),
@@ -92,7 +95,7 @@ double FramePilot::new_share(const PlannedSegment& segment) const {
 /// Lights whose photons are aimed where the camera looks, as in photon-trace.
 const Lights& FramePilot::aimed() {
   if (!aimed_) {
-    EmissionTable table = table_;
+    EmissionTable& table = aimed_table_.emplace(table_);
     aim_at_seen(tracer_, view_, kinds_, table);
     spheres_ = table.aim;
     aimed_.emplace(frame_, table);

@@ -58,7 +58,7 @@ class FramePilot {
   PreviewPilot preview();  ///< pilot_preview(), with aimed photons
   double kernel();         ///< pilot_kernel(): photons below the best Gaussian of a light texture
   SplitChoice split();     ///< choose_split() by a pilot
-  MovingPilot moving();    ///< pilot_moving()
+  MovingPilot moving();    ///< pilot_moving(), with aimed photons
   /// still_work() against another frame, in pieces of the picture, by camera paths.
   double still_work(const FramePilot& before, const Decisions& d) const;
   /// Mean share of a picture of the segment that the picture before does not show.
@@ -74,6 +74,7 @@ class FramePilot {
   CameraView view_;
   Tracer tracer_;
   Lights lights_;
+  std::optional<EmissionTable> aimed_table_;  ///< of aimed()
   std::optional<Lights> aimed_, without_extent_;
   std::vector<AimSphere> spheres_;
 };
