@@ -10,12 +10,10 @@ namespace tempolux {
 
 std::string decode_avif(std::span<const std::uint32_t> settings, std::span<const unsigned char> packed,
                         std::span<unsigned char> unpacked) {
-  if (settings.size() != 3) return "got a request that is no request for AVIF";
-  const std::uint64_t width = settings[0], height = settings[1], channels = settings[2];
   constexpr std::uint32_t most = 65536;  // largest width and height of an AV1 frame: 16 bits
-  if (channels != 4 || width < 1 || height < 1 || width > most || height > most ||
-      unpacked.size() != width * height * channels)
-    return "got a size that no AVIF image has";
+  ImageRequest request;
+  if (std::string wrong = request.read("AVIF", most, 4, settings, unpacked.size()); !wrong.empty()) return wrong;
+  const auto [width, height, channels] = request;
   const std::unique_ptr<avifDecoder, decltype(&avifDecoderDestroy)> decoder(avifDecoderCreate(), avifDecoderDestroy);
   if (!decoder) return "needs more memory than it may take for data of this size";
   decoder->maxThreads = 1;  // the guard lets no thread start

@@ -7,11 +7,10 @@ namespace tempolux {
 
 std::string decode_webp(std::span<const std::uint32_t> settings, std::span<const unsigned char> packed,
                         std::span<unsigned char> unpacked) {
-  if (settings.size() != 3) return "got a request that is no request for WebP";
-  const std::uint64_t width = settings[0], height = settings[1], channels = settings[2];
   constexpr std::uint64_t most = 16384;  // largest width and height of a WebP image: 14 bits
-  if ((channels != 3 && channels != 4) || width > most || height > most || unpacked.size() != width * height * channels)
-    return "got a size that no WebP image has";
+  ImageRequest request;
+  if (std::string wrong = request.read("WebP", most, 3, settings, unpacked.size()); !wrong.empty()) return wrong;
+  const auto [width, height, channels] = request;
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(packed.data(), packed.size(), &features) != VP8_STATUS_OK)
     return "finds no WebP image in it: it is damaged or cut short";

@@ -8,7 +8,9 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kPoints = 500;  ///< irradiance points per side (figures: docs/notebook/constants.md)
+/// Number of irradiance points on the front sides of all surfaces, and as many on the back sides.
+/// docs/notebook/constants.md compares it with other numbers.
+constexpr std::uint32_t kPoints = 500;
 
 }  // namespace
 

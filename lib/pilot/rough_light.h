@@ -21,9 +21,9 @@ class RoughLight {
  public:
   static constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough record
 
-  /// photons: of kPilotPaths light paths. paths: number of light paths of the frame's map. The radii of the points are
-  /// reduced to those of the frame's map, so that as many hits are close hits as in the frame. seen: spheres in which
-  /// points lie; empty: everywhere. `scene` must outlive this object.
+  /// Makes the points of `photons`, which kPilotPaths light paths have left. The frame's map has `paths` light paths:
+  /// radii of points are reduced to those of this map, so that as many hits are close hits as in the frame. Points lie
+  /// in the spheres `seen`, or everywhere if there is none. `scene` must outlive this object.
   RoughLight(const RenderScene& scene, const formats::PhotonBlock& photons, std::uint64_t paths, std::uint64_t seed,
              std::span<const AimSphere> seen);
 

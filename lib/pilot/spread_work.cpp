@@ -9,9 +9,9 @@
 namespace tempolux {
 namespace {
 
-/// Squared error of a density by k photons times k / light^2: the photons differ in flux, and those near the rim of the
-/// density's disc count less. Measured in the caustic light of S8 and furnished_day: 2.4 and 2.3
-/// (docs/methods/ways.md).
+/// Ratio of the squared error of a density of k photons to light^2 / k. The ratio is above 1 because photons differ in
+/// flux, and because photons near the rim of the density's disc have less weight. The caustic light of S8 and of
+/// furnished_day has the ratios 2.4 and 2.3 (docs/methods/ways.md).
 constexpr double kOfPhotons = 2.4;
 constexpr double kPhotonsOfAPlace = PhotonLightOptions{}.caustic_neighbours;
 /// Number of pixels over which the filter averages inside surfaces: it leaves .03 to .09 of the samples' squared error

@@ -9,11 +9,12 @@
 
 namespace tempolux {
 
-/// Squared error of caustic light that the density of a map of `photons` light paths estimates, as it is seen in a
-/// filtered picture of `pixels` pixels: the sum over boxes of a = 1, 25 and 225 pixels of
-///     2.4 light^2 / (k + d (a - 1 + g)),     d: photons per pixel.
-/// About k = 25 photons light a pixel, however many photons the map has. The mean over a box also averages the photons
-/// of the box, and the filter averages g = 16 pixels. Without light the error is 0.
+/// Squared error of caustic light that a map of `photons` light paths gives to a filtered picture of `pixels` pixels,
+/// as a viewer sees the error: the sum over boxes of a = 1, 25 and 225 pixels of
+///     2.4 light^2 / (k + d (a - 1 + g)).
+/// k = 25 photons light a pixel, however many photons the map has. d is the number of photons per pixel: the mean over
+/// a box also averages the photons of the box, and the filter averages g = 16 pixels. A density of n photons has the
+/// squared error 2.4 light^2 / n. Without light the error is 0.
 double seen_map_error(const RoughFrame& rough, double pixels, std::uint64_t photons);
 
 /// Sides of the boxes, in pixels, over which an error is seen: those of tests/bench/steady.py.
@@ -52,9 +53,8 @@ struct SpreadWork {
 };
 
 /// The numbers with the least product of the picture's work and its seen error, among those that leave at most the seen
-/// error of `asked`. The share s of the samples is 2^(-i/4);
-/// it is at least 1/8 and leaves at least 4 samples a pixel. Light paths are doubled; rays are halved, doubled or
-/// quadrupled. The seen error is
+/// error of `asked`. The share s of the samples is 2^(-i/4), at least 1/8, and leaves at least 4 samples a pixel. Light
+/// paths are doubled; rays are halved, doubled or quadrupled. The seen error is
 ///     1.24 E s^-.75 + seen_map_error() + 2.1 e / rays      (Seen).
 /// E is the squared error of the asked samples; n stratified samples leave n^(1-r) times the error of independent ones
 /// (stratified_rate()). e is the squared error of records at one ray.

@@ -34,10 +34,9 @@ constexpr const char* kMovingReason = "photon-trace --map dynamic";
 constexpr const char* kSplitReason = "photonmap-split";
 constexpr const char* kStillReason = "frame-render --still";
 
-/// The work of a frame, over what the pilot of decide_still() says (docs/methods/still.md).
+/// Largest factor by which the work of a frame exceeds the work that the pilot of decide_still() finds
+/// (docs/methods/still.md).
 constexpr double kStillPilotError = 2;
-/// Samples of the frame that gives the kept pixels, over those of a frame that keeps none (docs/methods/still.md).
-constexpr double kStillBase = 3.4;
 
 /// What is decided about.
 struct Deciding {
@@ -367,7 +366,7 @@ void decide_still(const PlannedSegment& segment, const PlannedFrame& middle, int
   StaticTree tree, middle_tree;
   const int number = others[others.size() / 2];
   const FramePilot now(wish, source, number, d.kinds, tree), before(wish, source, middle.frame, d.kinds, middle_tree);
-  const double work = now.still_work(before, d), of_middle = kStillBase / shot_frames;
+  const double work = now.still_work(before, d), of_middle = kFinerStillSamples / shot_frames;
   d.still = kStillPilotError * work + of_middle < 1;
   because(
       formatted("a frame that keeps pixels of frame %d has %.2f of the work of one that keeps none, and a part of "

@@ -34,10 +34,10 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
                  const Decisions* shot = nullptr);
 
 /// Decides whether the frames of a segment keep pixels of the shot's middle frame (METHOD=still). The camera must
-/// stand. A pilot compares a frame of the segment with the middle frame. It pays if two works together are below the
-/// work of a frame that keeps nothing: the work of a frame, with the pilot's error, and the frame's part of the middle
-/// frame's (docs/methods/still.md). shot_frames: number of frames of the animation, which share the middle frame. d:
-/// decisions of the segment.
+/// stand. A pilot compares one frame of the segment with the middle frame and estimates w, the work of a frame that
+/// keeps pixels over the work of a frame that keeps none. The shot_frames frames of the animation share the middle
+/// frame, so each of them also pays the part kFinerStillSamples / shot_frames. Frames keep pixels if 2 w plus this part
+/// is below 1, since the pilot finds down to half of the work (docs/methods/still.md). `d`: decisions of the segment.
 void decide_still(const PlannedSegment& segment, const PlannedFrame& middle, int shot_frames, const Wish& wish,
                   bool media, const SceneSource& source, Decisions& d);
 

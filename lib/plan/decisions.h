@@ -24,6 +24,11 @@ inline constexpr const char* kQualities[] = {"draft", "final"};
 enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview, still };
 inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview", "still"};
 
+/// METHOD=still: the frame that gives the kept pixels, compared with other frames. kFinerStill: its pixel error over
+/// theirs. All frames show its noise, so its noise must not be seen. kFinerStillSamples: the number of its samples over
+/// theirs, kFinerStill^(-7/8) (docs/methods/still.md).
+inline constexpr double kFinerStill = 0.25, kFinerStillSamples = 3.4;
+
 /// The enumerator with this name, in a list of names by value; empty if no enumerator has it.
 template <class Enum, std::size_t n>
 std::optional<Enum> named(const char* const (&names)[n], const std::string& name) {
@@ -105,7 +110,7 @@ struct Decisions {
   static double records_of(double pictures, double new_share) { return 1 + new_share * (pictures - 1); }
   double records_of(double pictures) const { return records_of(pictures, new_share); }
   bool walk = false;  ///< true: warping can make pictures between key frames
-  /// True: keeping pixels of the shot's middle frame pays (METHOD=still); METHOD=auto then does it.
+  /// True if frames cost less that keep pixels of the shot's middle frame (METHOD=still). METHOD=auto then keeps them.
   bool still = false;
   std::string view;         ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;  ///< frames for which pilots ran

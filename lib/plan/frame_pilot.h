@@ -74,7 +74,7 @@ class FramePilot {
   CameraView view_;
   Tracer tracer_;
   Lights lights_;
-  std::optional<EmissionTable> aimed_table_;  ///< of aimed()
+  std::optional<EmissionTable> aimed_table_;  ///< the table of the lights aimed()
   std::optional<Lights> aimed_, without_extent_;
   std::vector<AimSphere> spheres_;
 };

@@ -13,11 +13,6 @@ namespace {
 /// The audit traces this share of the frame's rays. With its look-ups an audit takes less than 3 % of a run.
 constexpr const char* kAudit = "--audit 0.02";
 
-/// METHOD=still: pixel error of the frame that gives the kept pixels, over the pixel error of other frames. With it the
-/// frame takes 3.4 times the samples. All frames show the noise of this frame, so its noise must not be seen
-/// (docs/methods/still.md).
-constexpr double kFinerStill = 0.25;
-
 /// The options of a frame's pixels, with `finer` times the pixel error.
 std::string pixels_with(const GraphBuilder& g, int frame, double finer) {
   if (!g.wish.preset_pixels) return g.wish.pixels;

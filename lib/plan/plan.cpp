@@ -221,8 +221,7 @@ std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan,
   const bool endless = last == std::numeric_limits<int>::max();
   for (const int frame : {0, endless ? 0 : last / 2, endless ? 0 : last}) {
     if (!pieces.empty() && frame <= pieces.back().last) continue;
-    const auto known = std::ranges::find_if(
-        plan.segments, [&](const PlannedSegment& s) { return s.first <= frame && frame <= s.last; });
+    const auto known = std::ranges::find_if(plan.segments, [&](const PlannedSegment& s) { return s.holds(frame); });
     pieces.push_back(known != plan.segments.end()
                          ? *known
                          : plan_segment(scene, segment_of(scene, frame, plan.time), camera_node, plan.time, media));
@@ -233,7 +232,7 @@ std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan,
 /// Adds the segment of the animation's middle frame, if its camera is that of a frame in the plan.
 void add_middle(Plan& plan) {
   const int middle = plan.last_frame / 2;
-  const auto holds = [&](const PlannedSegment& segment) { return segment.first <= middle && middle <= segment.last; };
+  const auto holds = [&](const PlannedSegment& segment) { return segment.holds(middle); };
   const auto piece = std::ranges::find_if(plan.shot, holds);
   if (piece == plan.shot.end() || std::ranges::any_of(plan.segments, holds)) return;
   const std::string& camera = piece->at(middle).camera;
@@ -274,7 +273,7 @@ bool PlannedSegment::is_blurred() const {
 }
 
 std::optional<int> Plan::middle() const {
-  const auto holds = [&](const PlannedSegment& s) { return s.first <= last_frame / 2 && last_frame / 2 <= s.last; };
+  const auto holds = [&](const PlannedSegment& segment) { return segment.holds(last_frame / 2); };
   return std::ranges::any_of(segments, holds) ? std::optional(last_frame / 2) : std::nullopt;
 }
 

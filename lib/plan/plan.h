@@ -47,6 +47,7 @@ struct PlannedSegment {
   MaterialFacts materials;           ///< lobes of the materials, over all frames
   Decisions decisions;
 
+  bool holds(int frame) const { return first <= frame && frame <= last; }
   const PlannedFrame& at(int frame) const;
   /// First frame of each state of light transport, ascending.
   std::vector<int> states() const;

@@ -165,8 +165,15 @@ struct PixelPass {
   int half(int i) const { return 2 * i >= count.own; }
 };
 
+/// Adds sample i of a pass to its half. The sample of a pass of one goes to the half that has fewer.
+inline void add_to_half(const PixelPass& pass, int i, const PathParts& sample, const PathEffort& effort,
+                        SampleHalves& halves) {
+  const bool single = pass.count.own == 1;
+  halves.add(single ? halves.half[1][0].count < halves.half[0][0].count : pass.half(i), sample, effort);
+}
+
 /// Takes the samples of a pass one after the other and calls add(i, sample). Also adds them to `halves`, unless it is
-/// null; the sample of a pass of one goes to the half that has fewer.
+/// null.
 template <class Add>
 void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves, RayCounts& counts,
                      const Add& add) {
@@ -184,10 +191,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
     scene.tracer.intersect(ray, hit);
     caustics.use_half(pass.half(i));
     const PathParts parts = trace_eye_parts(scene, {ray, hit, view.cone()}, random, known, counts, effort);
-    if (halves) {
-      const bool single = pass.count.own == 1;
-      halves->add(single ? halves->half[1][0].count < halves->half[0][0].count : pass.half(i), parts, effort);
-    }
+    if (halves) add_to_half(pass, i, parts, effort, *halves);
     add(i, parts);
   }
 }

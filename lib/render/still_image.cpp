@@ -1,9 +1,8 @@
 // lib/render/still_image.cpp -- adds the change of kept pixels to an image.
 #include <algorithm>
-#include <array>
-#include <string>
 
 #include "lib/core/parallel_each.h"
+#include "lib/render/layer_channels.h"
 #include "lib/render/still_pixels.h"
 
 namespace tempolux {
@@ -23,21 +22,12 @@ void add_noise_of_change(const StillPixels& still, Image& image) {
 }  // namespace
 
 void add_change(const StillPixels& still, Image& image) {
-  const auto values = [&](const std::string& name) -> float* {
-    Channel* channel = image.find(name);
-    return channel && channel->ids.empty() ? channel->values.data() : nullptr;
-  };
-  std::array<std::array<float*, 3>, kLayerCount> layers{};
-  std::array<float*, 3> sum{};
+  const auto layers = layer_channels(image);
+  const auto sum = channels_of(image, "");
+  float* const alpha = values_of(image, "A");
   bool all = true;
-  for (std::size_t c = 0; c < 3; ++c) {
-    sum[c] = values(std::string(1, "RGB"[c]));
-    for (std::size_t l = 0; l < kLayerCount; ++l) {
-      layers[l][c] = values(std::string(kLayerNames[l]) + "." + "RGB"[c]);
-      all &= layers[l][c] != nullptr || l == std::size_t(Layer::volume);
-    }
-  }
-  float* const alpha = values("A");
+  for (std::size_t l = 0; l < kLayerCount; ++l)
+    all &= l == std::size_t(Layer::volume) || (layers[l][0] && layers[l][1] && layers[l][2]);
   parallel_each(still.anew.size(), 4096, [&](std::size_t p) {
     if (still.anew[p]) return;
     const Layers& change = still.change.pixels[p];

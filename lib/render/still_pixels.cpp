@@ -8,6 +8,7 @@
 
 #include "lib/core/parallel_each.h"
 #include "lib/render/known_light.h"
+#include "lib/render/layer_channels.h"
 #include "lib/render/pixel_noise.h"
 #include "lib/render/pixels_around.h"
 
@@ -38,9 +39,10 @@ Layers part_of_mean(const PathParts& sample, const PartCounts& counts) {
   return part;
 }
 
-/// The sample of a pixel that changes its mean difference most.
+/// The sample with the largest part in the mean difference of a pixel.
 struct StrongestSample {
-  Layers change;    ///< its part of the mean, times the number of camera rays; parts with fewer samples count more
+  /// Its part of the mean over the pass, times the camera rays of the pass. Parts with fewer samples have more weight.
+  Layers change;
   double size = 0;  ///< |radiance| of `change` [W/m^2/sr]
   void note(const PathParts& sample, const PartCounts& counts) {
     const Layers part = part_of_mean(sample, counts);
@@ -78,25 +80,17 @@ void for_each_change(const BothMoments& moments, const PixelPass& pass, SampleHa
   const Dealt dealt(moments.now.seed, pass.pixel, pass.first, pass.count);
   for_each_sample(moments.before, pass, nullptr, counts, [&](int i, const PathParts& sample) {
     const PathParts change = difference_of(samples[std::size_t(i)], sample);
-    if (halves) {
-      const bool single = pass.count.own == 1;
-      halves->add(single ? halves->half[1][0].count < halves->half[0][0].count : pass.half(i), change, dealt(i));
-    }
+    if (halves) add_to_half(pass, i, change, dealt(i), *halves);
     add(i, samples[std::size_t(i)], change);
   });
 }
 
-/// The layers of a pixel of an image; an image without layers has its light in layer direct.
+/// The layers of a pixel of an image. If the image has no layers, its light counts as layer direct.
 class ShownLayers {
  public:
-  explicit ShownLayers(const Image& image) {
-    for (std::size_t l = 0; l < kLayerCount; ++l)
-      for (std::size_t c = 0; c < 3; ++c)
-        if (const Channel* channel = image.find(std::string(kLayerNames[l]) + "." + "RGB"[c]))
-          from_[l][c] = channel->values.data(), any_ = true;
-    for (std::size_t c = 0; c < 3 && !any_; ++c)
-      if (const Channel* channel = image.find(std::string(1, "RGB"[c])))
-        from_[std::size_t(Layer::direct)][c] = channel->values.data();
+  explicit ShownLayers(const Image& image) : from_(layer_channels(image)) {
+    const bool any = std::ranges::any_of(from_, [](const auto& layer) { return layer[0] || layer[1] || layer[2]; });
+    if (!any) from_[std::size_t(Layer::direct)] = channels_of(image, "");
   }
   Layers at(std::size_t pixel) const {
     Layers layers;
@@ -107,8 +101,7 @@ class ShownLayers {
   }
 
  private:
-  std::array<std::array<const float*, 3>, kLayerCount> from_{};
-  bool any_ = false;
+  std::array<std::array<const float*, 3>, kLayerCount> from_;
 };
 
 /// Each first sample of a comparison is two samples, and most pixels need no further ones. So a pixel gets half as many
@@ -143,8 +136,7 @@ class Comparison {
         still_(still),
         counts_(std::size_t(width_) * std::size_t(height_), change_noise_.first()),
         parts_(counts_.size()),
-        strongest_(counts_.size()),
-        level_(counts_.size()) {
+        strongest_(counts_.size()) {
     still.anew.assign(counts_.size(), 1);
     LayerImage& change = still.change;
     change.width = width_, change.height = height_;
@@ -279,7 +271,6 @@ class Comparison {
     join_parts(change[0] + change[1], pass.first, pass.count, parts_[pass.pixel]);
     if (pass.first.own > 0) return;
     const std::uint64_t of_one_moment = onward_ ? (counts.onward - onward) / 2 : 0;
-    level_[pass.pixel] = level;
     plain_noise_.note(pass.pixel, now[0], now[1], of_one_moment);
     change_noise_.note(pass.pixel, change[0], change[1], of_one_moment);
     for (PixelNoise* noise : {&plain_noise_, &change_noise_}) noise->set_level(pass.pixel, level);
@@ -289,7 +280,7 @@ class Comparison {
   /// kept pixels around, so widely that none gets more than it may err, and at most as far as its samples are noticed.
   void spread_strongest(std::size_t pixel) {
     const Layers excess = strongest_[pixel].excess(parts_[pixel].sum(), counts_[pixel].own);
-    const double size = std::abs(radiance_of(excess)), error = error_at(level_[pixel]);
+    const double size = std::abs(radiance_of(excess)), error = error_at(plain_noise_.mean_at(pixel));
     if (!(size > error)) return;
     std::vector<std::size_t> to;
     for (int reach = 1; reach <= PixelNoise::kWide && size > error * double(to.size()); ++reach) {
@@ -314,7 +305,6 @@ class Comparison {
   std::vector<PartCounts> counts_;  ///< by pixel: samples of the change
   std::vector<PathParts> parts_;    ///< by pixel: means over these samples
   std::vector<StrongestSample> strongest_;
-  std::vector<double> level_;  ///< by pixel: radiance now, mean of the channels [W/m^2/sr]
 };
 
 }  // namespace

@@ -60,8 +60,9 @@ Use use_by_textures(const Json& document, const char* name) {
   for (std::size_t t = 0; t < textures.size(); ++t) {
     if (!has_extension(textures[t], name)) continue;
     use.used = true;
-    const bool has_other = textures[t].contains("source") || has_extension(textures[t], "EXT_texture_webp") ||
-                           has_extension(textures[t], "EXT_texture_avif");
+    const bool has_other =
+        textures[t].contains("source") ||
+        std::ranges::any_of(kImageExtensions, [&](const char* other) { return has_extension(textures[t], other); });
     if (!has_other && use.only.empty()) use.only = place_of("textures", t);
   }
   return use;

@@ -2,6 +2,7 @@
 // the gate.
 #pragma once
 
+#include <array>
 #include <set>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "lib/scene/gltf_json.h"
 
 namespace tempolux::gltf {
+
+/// Extensions of textures whose images are decoded.
+inline constexpr std::array kImageExtensions{"EXT_texture_webp", "EXT_texture_avif"};
 
 /// Throws InputError in two cases: the file requires an extension that is not in `known` and cannot be rendered without
 /// the extension; or an image exists only in the format of an unknown extension. The message names the extension, the

@@ -246,7 +246,7 @@ void unpack_packed(Json& document, const std::string& path, const GltfOptions& o
       Json& primitive = document["meshes"][m]["primitives"][p];
       if (primitive_is_packed_only(document, primitive, name)) unpacking.add_primitive(m, p);
     }
-  for (const char* name : {"EXT_texture_webp", "EXT_texture_avif"}) use_images_of(name, document, path);
+  for (const char* name : kImageExtensions) use_images_of(name, document, path);
   unpacking.finish();
   if (document.contains("buffers"))  // packed files have buffers without bytes, which tinygltf must not open
     for (Json& buffer : document["buffers"])
