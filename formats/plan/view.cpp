@@ -1,6 +1,7 @@
 // formats/plan/view.cpp -- reads and writes the view files of plan.md.
 #include "formats/plan/view.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -12,10 +13,11 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr std::string_view kFirstLine = "tempolux view 1.0", kFirstLineWithLights = "tempolux view 1.1";
-constexpr std::string_view kLight = "light ", kEnvironmentName = "environment";
+/// First lines of the versions. Version 1.1 adds lights, version 1.2 openings.
+constexpr std::string_view kFirstLines[] = {"tempolux view 1.0", "tempolux view 1.1", "tempolux view 1.2"};
+constexpr std::string_view kLight = "light ", kOpening = "opening ", kEnvironmentName = "environment";
 constexpr double kFarthest = 1e30;             ///< m: squares stay in a double, and no scene is larger
-constexpr std::size_t kLargestFile = 1 << 14;  ///< bytes: all lines with numbers of 24 characters need half
+constexpr std::size_t kLargestFile = 1 << 15;  ///< bytes: all lines with numbers of 24 characters need half
 
 void append(std::string& text, double value, char after) {
   char digits[32];
@@ -40,6 +42,12 @@ void parse_numbers(std::string_view line, std::span<double> values, const std::s
     at = next;
   }
   if (at != end) refuse(name, number, why);
+}
+
+void append(std::string& text, const ViewSphere& sphere) {
+  for (const double x : sphere.centre) append(text, x, ' ');
+  append(text, sphere.radius, ' ');
+  append(text, sphere.weight, '\n');
 }
 
 ViewSphere parse_sphere(std::string_view line, const std::string& name, std::size_t number) {
@@ -68,11 +76,12 @@ ViewLight parse_light(std::string_view line, const std::string& name, std::size_
 }  // namespace
 
 std::string view_text(const View& view) {
-  std::string text = std::string(view.lights.empty() ? kFirstLine : kFirstLineWithLights) + "\n";
-  for (const ViewSphere& sphere : view.spheres) {
-    for (const double x : sphere.centre) append(text, x, ' ');
-    append(text, sphere.radius, ' ');
-    append(text, sphere.weight, '\n');
+  const std::size_t version = !view.openings.empty() ? 2 : !view.lights.empty() ? 1 : 0;
+  std::string text = std::string(kFirstLines[version]) + "\n";
+  for (const ViewSphere& sphere : view.spheres) append(text, sphere);
+  for (const ViewSphere& opening : view.openings) {
+    text += kOpening;
+    append(text, opening);
   }
   for (const ViewLight& light : view.lights) {
     text += kLight;
@@ -86,9 +95,9 @@ std::string view_text(const View& view) {
 View parse_view(const std::string& text, const std::string& name) {
   std::istringstream in(text);
   std::string line;
-  if (!std::getline(in, line) || (line != kFirstLine && line != kFirstLineWithLights))
+  if (!std::getline(in, line) || std::ranges::count(kFirstLines, line) == 0)
     refuse(name, 1, "not a view file of version 1");
-  const bool may_have_lights = line == kFirstLineWithLights;
+  const bool may_have_lights = line != kFirstLines[0], may_have_openings = line == kFirstLines[2];
   View view;
   for (std::size_t number = 2; std::getline(in, line); ++number) {
     if (may_have_lights && line.starts_with(kLight)) {
@@ -97,9 +106,11 @@ View parse_view(const std::string& text, const std::string& name) {
       view.lights.push_back(parse_light(line, name, number));
       continue;
     }
-    if (view.spheres.size() == kMaxViewSpheres)
-      refuse(name, number, "more than " + std::to_string(kMaxViewSpheres) + " spheres");
-    view.spheres.push_back(parse_sphere(line, name, number));
+    const bool opening = may_have_openings && line.starts_with(kOpening);
+    std::vector<ViewSphere>& list = opening ? view.openings : view.spheres;
+    if (list.size() == kMaxViewSpheres)
+      refuse(name, number, "more than " + std::to_string(kMaxViewSpheres) + (opening ? " openings" : " spheres"));
+    list.push_back(parse_sphere(std::string_view(line).substr(opening ? kOpening.size() : 0), name, number));
   }
   return view;
 }

@@ -24,32 +24,53 @@ double one_minus_cos(double radius, Vec3d to_centre) {
   return sine2 / (1 + std::sqrt(1 - sine2));
 }
 
-}  // namespace
-
-Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius)
-    : scene_centre_(scene_centre), scene_radius_(scene_radius) {
-  if (spheres.empty() || !(scene_radius > 0)) return;
-  double sum = 0, squares = 0;
-  Vec3d middle;
+double sum_of_weights(std::span<const AimSphere> spheres) {
+  double sum = 0;
   for (const AimSphere& sphere : spheres) {
     TEMPOLUX_CHECK(sphere.radius > 0 && sphere.weight > 0);
     sum += sphere.weight;
-    middle = middle + sphere.centre * sphere.weight;
   }
+  return sum;
+}
+
+}  // namespace
+
+Aim::Aim(std::span<const AimSphere> spheres, std::span<const AimSphere> openings, Vec3 scene_centre,
+         double scene_radius)
+    : scene_centre_(scene_centre), scene_radius_(scene_radius) {
+  if (!(scene_radius > 0)) return;
+  const double aimed = 1 - kUniform, of_openings = openings.empty() ? 0 : spheres.empty() ? aimed : aimed / 2;
+  add_given(spheres, aimed - of_openings);
+  add_openings(openings, of_openings);
+}
+
+void Aim::add_openings(std::span<const AimSphere> openings, double share) {
+  const double sum = sum_of_weights(openings);
+  for (const AimSphere& opening : openings) add(opening.centre, opening.radius, share * opening.weight / sum);
+}
+
+/// Adds the given spheres and the larger spheres around them, which have the same part of the share as without
+/// openings.
+void Aim::add_given(std::span<const AimSphere> spheres, double share) {
+  if (spheres.empty()) return;
+  const double sum = sum_of_weights(spheres);
+  double squares = 0;
+  Vec3d middle;
+  for (const AimSphere& sphere : spheres) middle = middle + sphere.centre * sphere.weight;
   middle = middle / sum;
   for (const AimSphere& sphere : spheres) {
     const Vec3d off = sphere.centre - middle;
     squares += sphere.weight / sum * (dot(off, off) + sphere.radius * sphere.radius);
   }
   std::vector<double> around;  // radii
-  for (double radius = 2 * std::sqrt(squares); radius <= scene_radius; radius *= 2) around.push_back(radius);
-  const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
+  for (double radius = 2 * std::sqrt(squares); radius <= scene_radius_; radius *= 2) around.push_back(radius);
+  const double of_around = around.empty() ? 0 : share * kAround / (1 - kUniform), aimed = share - of_around;
   for (const AimSphere& sphere : spheres) {
     add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
     smallest_ = std::min(smallest_, sphere.radius);
   }
   given_ = discs_.size();
-  for (const double radius : around) add(middle, radius, kAround / double(around.size()));
+  for (const double radius : around) add(middle, radius, of_around / double(around.size()));
 }
 
 /// Adds a disc that is chosen with probability `share`.
@@ -67,7 +88,7 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
     return {scene_centre_ + axes.to_world({disc.x * r, disc.y * r, -r}), 1};
   }
   const Vec3d across(axes.to_world({1, 0, 0})), up(axes.to_world({0, 1, 0}));
-  double x, y, density = kUniform;
+  double x, y;
   std::size_t chosen = discs_.size();
   if (u < kUniform) {
     const Vec2 p = disc_point(u / kUniform, v);
@@ -82,17 +103,30 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
     x = dot(d.centre, across) + p.x * d.radius;
     y = dot(d.centre, up) + p.y * d.radius;
   }
-  for (std::size_t k = 0; k < discs_.size(); ++k) {
-    const double dx = x - dot(discs_[k].centre, across), dy = y - dot(discs_[k].centre, up);
-    // A start point counts as inside the disc it was drawn on, although rounding may put it just outside the rim.
-    if (k == chosen || dx * dx + dy * dy < discs_[k].radius * discs_[k].radius) density += discs_[k].gain;
-  }
   Start start;
   start.origin = scene_centre_ + axes.to_world({float(x), float(y), -float(scene_radius_)});
   // There is no geometry outside the scene's disc: photons that start there carry no flux.
   const bool beside = chosen < discs_.size() && x * x + y * y > scene_radius_ * scene_radius_;
-  start.flux = beside ? 0 : 1 / density;
+  start.flux = beside ? 0 : 1 / density(x, y, across, up, chosen);
   return start;
+}
+
+double Aim::density(Vec3 point, Vec3 travel) const {
+  const Frame axes(travel);
+  const Vec3d across(axes.to_world({1, 0, 0})), up(axes.to_world({0, 1, 0})),
+      from = Vec3d(point) - Vec3d(scene_centre_);
+  return discs_.empty() ? 1 : density(dot(from, across), dot(from, up), across, up, discs_.size());
+}
+
+/// x, y [m]: place on the scene's disc with the axes `across` and `up`. `chosen`: the disc that the place was drawn on.
+/// The place counts as inside this disc, although rounding may put it just outside the rim.
+double Aim::density(double x, double y, Vec3d across, Vec3d up, std::size_t chosen) const {
+  double density = kUniform;
+  for (std::size_t k = 0; k < discs_.size(); ++k) {
+    const double dx = x - dot(discs_[k].centre, across), dy = y - dot(discs_[k].centre, up);
+    if (k == chosen || dx * dx + dy * dy < discs_[k].radius * discs_[k].radius) density += discs_[k].gain;
+  }
+  return density;
 }
 
 bool Aim::holds(Vec3 point) const {
@@ -108,7 +142,9 @@ double Aim::largest_target(Vec3d place) const {
   return own / kMuchSmaller;
 }
 
-bool Aim::aims_from(Vec3 place) const { return smallest_ <= largest_target(Vec3d(place) - Vec3d(scene_centre_)); }
+bool Aim::aims_from(Vec3 place) const {
+  return given_ > 0 && smallest_ <= largest_target(Vec3d(place) - Vec3d(scene_centre_));
+}
 
 Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Vec3d from = Vec3d(place) - Vec3d(scene_centre_);

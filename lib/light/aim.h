@@ -23,7 +23,9 @@ struct AimSphere {
 /// Start points of parallel light. A photon starts with probability kUniform uniformly on a disc of the scene sphere's
 /// radius R in front of the scene. Else it chooses sphere k with probability w_k and starts uniformly on the disc of
 /// radius r_k that the sphere covers, seen along the light. The constructor adds larger spheres around all given ones,
-/// each twice as wide as the one before, up to the scene's; together they have the share kAround.
+/// each twice as wide as the one before, up to the scene's; together they have the share kAround. Openings are further
+/// spheres, through which light reaches what is seen; they have half of the remaining share, or all of it if no sphere
+/// is given. Bounces are not aimed at openings.
 /// The pdf [1/m^2] of a start point sums over all ways to choose the point:
 ///     p = kUniform / (pi R^2) + (1 - kUniform) sum_k w_k [disc k holds the point] / (pi r_k^2)
 /// A photon's flux is divided by p, so the expected light does not depend on the spheres or their weights. Flux is at
@@ -34,8 +36,9 @@ class Aim {
 
   /// No aim: empty().
   Aim() = default;
-  /// Radii and weights must be above 0. Without spheres or scene the aim is empty. Scene space, m.
-  Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);
+  /// Radii and weights must be above 0. Without spheres and openings, or without a scene, the aim is empty. Scene
+  /// space, m.
+  Aim(std::span<const AimSphere> spheres, std::span<const AimSphere> openings, Vec3 scene_centre, double scene_radius);
 
   /// The scene sphere's radius [m], and the area [m^2] of its disc, through which all light from outside comes.
   double scene_radius() const { return scene_radius_; }
@@ -56,6 +59,8 @@ class Aim {
   /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Without
   /// spheres the start is uniform on the scene's disc.
   Start start(Vec3 travel, double u, double v) const;
+  /// p pi R^2 of light that travels along `travel` (unit) through a point inside the scene's sphere: 1 / Start::flux.
+  double density(Vec3 point, Vec3 travel) const;
 
   /// True if one of the given spheres holds the point (scene space).
   bool holds(Vec3 point) const;
@@ -93,11 +98,14 @@ class Aim {
 
     bool holds(Vec3d point) const { return length2(point - centre) < radius * radius; }
   };
+  void add_given(std::span<const AimSphere> spheres, double share);
+  void add_openings(std::span<const AimSphere> openings, double share);
   void add(Vec3d centre, double radius, double share);
+  double density(double x, double y, Vec3d across, Vec3d up, std::size_t chosen) const;
   std::span<const Disc> given() const { return std::span(discs_).first(given_); }
   double largest_target(Vec3d place) const;
   double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen, double largest) const;
-  std::vector<Disc> discs_;  ///< the given spheres come first
+  std::vector<Disc> discs_;  ///< the given spheres come first, openings last
   std::size_t given_ = 0;
   double smallest_ = INFINITY;  ///< m: least radius of the given spheres
   Vec3 scene_centre_{};

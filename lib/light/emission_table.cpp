@@ -138,11 +138,12 @@ std::string emission_hash(const EmissionTable& table, const Segment& segment) {
   hasher.add(segment.origin);
   hasher.add(segment.world_bounds.lower);
   hasher.add(segment.world_bounds.upper);
-  for (const AimSphere& sphere : table.aim) {
-    hasher.add(sphere.centre);
-    hasher.add(sphere.radius);
-    hasher.add(sphere.weight);
-  }
+  for (const auto* spheres : {&table.aim, &table.openings})
+    for (const AimSphere& sphere : *spheres) {
+      hasher.add(sphere.centre);
+      hasher.add(sphere.radius);
+      hasher.add(sphere.weight);
+    }
   return hasher.hex();
 }
 

@@ -15,18 +15,21 @@ Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
     : frame_(&frame),
       which_(which),
       environment_(table.environment),
-      aim_(table.aim, Vec3(table.sphere_centre), table.sphere_radius) {
+      aim_(table.aim, table.openings, Vec3(table.sphere_centre), table.sphere_radius) {
   if (environment_ && (which == Which::all || which == Which::distant))
     environment_weight_ = max_component(environment_->integral()) / 4;
   add_slots(table);
   build_tree();
 }
 
+bool Lights::is_distant(std::size_t slot) const {
+  return with(slot, [](const auto& light) { return light.distant(); });
+}
+
 bool Lights::shines(std::size_t slot) const {
-  const bool distant = with(slot, [](const auto& light) { return light.distant(); });
   switch (which_) {
-    case Which::placed: return !distant;
-    case Which::distant: return distant;
+    case Which::placed: return !is_distant(slot);
+    case Which::distant: return is_distant(slot);
     case Which::punctual: return slots_[slot].light != kNone;
     default: return true;
   }
@@ -72,9 +75,7 @@ Lights Lights::placed_alike() const {
   const auto node = [&](std::size_t i) {
     return slots_[i].light == kNone ? frame_->surfaces[slots_[i].surface].node : frame_->lights[slots_[i].light].node;
   };
-  const auto is_placed = [&](std::size_t i) {
-    return slots_[i].probability > 0 && with(i, [](const auto& light) { return !light.distant(); });
-  };
+  const auto is_placed = [&](std::size_t i) { return slots_[i].probability > 0 && !is_distant(i); };
   std::map<std::uint32_t, double> of_node;
   double all = 0;
   for (std::size_t i = 0; i < slots_.size(); ++i)
@@ -98,7 +99,7 @@ void Lights::build_tree() {
   tree_index_.assign(slots_.size(), kNone);
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     if (!shines(i) || !with(i, [](const auto& light) { return light.emits(); })) continue;
-    if (with(i, [](const auto& light) { return light.distant(); })) {
+    if (is_distant(i)) {
       if (slots_[i].light != kNone) suns_.push_back(slots_[i].light);
       continue;
     }

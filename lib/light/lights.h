@@ -56,6 +56,7 @@ struct EmissionTable {
   double sphere_radius = 0;
   std::shared_ptr<const EnvironmentLight> environment;  ///< its Environment must outlive the table; nullptr: none
   std::vector<AimSphere> aim;  ///< spheres to aim photons of directional lights and environment at; empty: no aiming
+  std::vector<AimSphere> openings;  ///< through which light of sun and sky reaches what is seen (Aim)
 };
 
 /// The parts table.parts[index] as lights of a frame, in the same order.
@@ -97,6 +98,8 @@ class Lights {
   const std::shared_ptr<const SkyGuide>& guide() const { return guide_; }
 
   /// True if a directional light shines or the environment is not black.
+  /// True if the slot is a directional light or the environment.
+  bool is_distant(std::size_t slot) const;
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }
   /// True if any light inside the scene shines.
   bool has_placed() const { return !tree_.empty(); }

@@ -95,6 +95,16 @@ MovingPilot pilot_moving(const RenderScene& scene, const EmissionTable& emission
   return {double(maps.touched) / double(kPilotPaths), places > 0 ? double(all_gathered) / double(places) : 0};
 }
 
+namespace {
+
+/// MovingChoice::static_ray_factor: f^2 is compared with the squares of sqrt(2) and 2 sqrt(2).
+int static_ray_factor(double gathered, double static_records) {
+  const double above = (1 - gathered) * (kLeastRecords + gathered), below = static_records * gathered;
+  return above >= 8 * below ? 4 : above >= 2 * below ? 2 : 1;
+}
+
+}  // namespace
+
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records) {
   const double light =
       1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
@@ -104,7 +114,11 @@ MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double 
       because, sizeof because,
       "what moves touches %.0f %% of the paths of light and matters at %.0f %% of what is seen; %zu states of light",
       100 * pilot.touched_share, 100 * pilot.gathered_share, states);
-  return {!(light < 1) ? MovingMethod::anew : records < 1 ? MovingMethod::records : MovingMethod::light, because};
+  const MovingMethod method = !(light < 1)  ? MovingMethod::anew
+                              : records < 1 ? MovingMethod::records
+                                            : MovingMethod::light;
+  return {method, because,
+          method == MovingMethod::records ? static_ray_factor(pilot.gathered_share, static_records) : 1};
 }
 
 }  // namespace tempolux

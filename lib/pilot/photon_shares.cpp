@@ -107,10 +107,18 @@ bool is_seen(const Tracer& tracer, std::span<const WeighedPlace> places, const f
   return false;
 }
 
+/// A photon of sun or sky in a cell.
+struct DistantPhoton {
+  std::uint64_t path;
+  std::size_t cell;
+  double flux;  ///< W
+};
+
 /// The flux that the paths of each light bring into the cells.
 struct Arrivals {
   std::vector<double> flux, square;  ///< by cell and light: sums over photons of flux [W] and of its square
   std::size_t photons = 0;           ///< in all cells
+  std::vector<DistantPhoton> distant;
 
   explicit Arrivals(std::size_t size) : flux(size), square(size) {}
   void add(std::size_t at, double of_photon) {
@@ -120,6 +128,7 @@ struct Arrivals {
   }
   void add(const Arrivals& other) {
     photons += other.photons;
+    distant.insert(distant.end(), other.distant.begin(), other.distant.end());
     for (std::size_t i = 0; i < flux.size(); ++i) flux[i] += other.flux[i], square[i] += other.square[i];
   }
 };
@@ -144,19 +153,40 @@ Arrivals arrivals(const PhotonTracer& photons, const Lights& lights, const Trace
     const PhotonBatch batch = photons.trace_paths(numbers);
     for (std::size_t i = 0; i < batch.block.photons.size(); ++i) {
       const formats::Photon& photon = batch.block.photons[i];
-      std::optional<std::size_t> light;
+      std::optional<std::uint32_t> slot;
       for (std::size_t k = 0; k < seen.cells.size(); ++k) {
         if (seen.places[k].empty() || !seen.cells[k].holds(Vec3d(vec_of(photon.position))) ||
             !is_seen(tracer, seen.places[k], photon, b * kBatch + i))
           continue;
-        if (!light) light = light_of_slot[lights.emit(halton.point(numbers[batch.path_of[i]])).slot];
-        batches[b].add(k * count + *light, emission_weight(Rgbd(Rgb(photon.flux[0], photon.flux[1], photon.flux[2]))));
+        const std::uint64_t path = numbers[batch.path_of[i]];
+        if (!slot) slot = lights.emit(halton.point(path)).slot;
+        const double flux = emission_weight(Rgbd(Rgb(photon.flux[0], photon.flux[1], photon.flux[2])));
+        batches[b].add(k * count + light_of_slot[*slot], flux);
+        if (lights.is_distant(*slot)) batches[b].distant.push_back({path, k, flux});
       }
     }
   });
   Arrivals all(size);
   for (const Arrivals& batch : batches) all.add(batch);
   return all;
+}
+
+/// The starts of the paths of these photons.
+std::vector<DistantStart> starts_of(std::span<const DistantPhoton> photons, std::span<const double> square_of_flux,
+                                    const Lights& lights, const PhotonHalton& halton, Vec3d origin) {
+  std::vector<DistantStart> starts;
+  std::uint64_t last = 0;
+  for (const DistantPhoton& photon : photons) {
+    if (starts.empty() || photon.path != last) {
+      const PhotonEmission e = lights.emit(halton.point(photon.path));
+      const Vec3 inside = e.origin + e.travel * float(lights.aim().scene_radius());
+      starts.push_back({Vec3d(inside) + origin, Vec3d(e.travel), 0, lights.aim().density(inside, e.travel)});
+      last = photon.path;
+    }
+    if (square_of_flux[photon.cell] > 0)
+      starts.back().value2 += photon.flux * photon.flux / square_of_flux[photon.cell];
+  }
+  return starts;
 }
 
 }  // namespace
@@ -182,7 +212,7 @@ void SharePilot::look(const Tracer& tracer, const EmissionTable& table) {
   const SeenCells seen{spheres_in_scene(cells_, frame.origin), places_};
   const NodesOfSlots nodes(frame, table);
   const std::vector<std::uint32_t> lights = measured_nodes(frame, table, nodes, seen.cells);
-  if (lights.size() < 2 || cells_.empty()) return;
+  if (cells_.empty() || (lights.size() < 2 && !frame.scene->has_distant_light())) return;
   std::vector<std::size_t> light_of_slot;  // 0 for slots that emit nothing
   for (const std::uint32_t node : nodes.node) {
     const auto found = std::ranges::find(lights, node);
@@ -199,14 +229,22 @@ void SharePilot::look(const Tracer& tracer, const EmissionTable& table) {
     options.photon_count *= 4;
   }
   before_ = nodes.shares;
+  std::vector<double> square_of_flux(cells_.size());  // by cell: E_k^2 / c_k
   for (std::size_t k = 0; k < cells_.size(); ++k) {
     const auto row = std::span(all.flux).subspan(k * lights.size(), lights.size());
     const double flux = std::accumulate(row.begin(), row.end(), 0.0);
     if (!(flux > 0)) continue;
+    square_of_flux[k] = flux * flux / cells_[k].weight;
     for (std::size_t i = 0; i < lights.size(); ++i)
       squares_[lights[i]] += cells_[k].weight * all.square[k * lights.size() + i] / (flux * flux);
   }
+  const auto starts = starts_of(all.distant, square_of_flux, emitters, PhotonHalton(options.seed), frame.origin);
+  starts_.insert(starts_.end(), starts.begin(), starts.end());
+  table_ = table;
+  origin_ = frame.origin;
 }
+
+std::vector<formats::ViewSphere> SharePilot::openings() const { return find_openings(starts_, table_, origin_); }
 
 std::vector<formats::ViewLight> SharePilot::shares() const {
   double sum = 0;

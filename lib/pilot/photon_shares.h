@@ -1,4 +1,5 @@
-// lib/pilot/photon_shares.h -- the share of the photons that each light gets, by what its photons bring into view.
+// lib/pilot/photon_shares.h -- the share of the photons that each light gets, and the openings at which photons of sun
+// and sky are aimed, by what photons bring into view.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "formats/plan/view.h"
 #include "lib/light/lights.h"
+#include "lib/pilot/find_openings.h"
 #include "lib/pilot/seen_spheres.h"
 #include "lib/trace/trace.h"
 
@@ -29,12 +31,14 @@ class SharePilot {
   SharePilot(std::vector<formats::ViewSphere> cells, std::span<const WeighedPlace> places, std::string kinds);
 
   /// Adds the pilot of a frame. The table belongs to the frame's segment and has aim if the map's photons are aimed. No
-  /// work with a single light. The same result for any number of threads.
+  /// work with a single light, unless it is sun or sky. The same result for any number of threads.
   void look(const Tracer& tracer, const EmissionTable& table);
 
   /// Shares by node. Empty if fewer than two lights matter, or if V is less than kLeastGain times better than with the
   /// shares of the last table.
   std::vector<formats::ViewLight> shares() const;
+  /// find_openings() of all frames. x^2 of a path is the sum over its photons of c_k (flux / E_k)^2.
+  std::vector<formats::ViewSphere> openings() const;
 
  private:
   std::vector<formats::ViewSphere> cells_;
@@ -42,6 +46,9 @@ class SharePilot {
   std::string kinds_;
   std::map<std::uint32_t, double> squares_;  ///< by node: sum over frames and cells of c_k s_ik^2 / E_k^2
   std::map<std::uint32_t, double> before_;   ///< by node: its share in the last table
+  std::vector<DistantStart> starts_;         ///< of paths of sun and sky that brought photons into cells
+  EmissionTable table_;                      ///< the last one
+  Vec3d origin_;                             ///< m, of the last frame
 };
 
 /// True if two nodes of the frame, or a node and the environment, may emit photons, so that shares matter.

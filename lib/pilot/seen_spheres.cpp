@@ -23,8 +23,7 @@ constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres);  ///< cel
 /// Share of the weight below which a cell has less than one place per camera: the places of a camera ray weigh at
 /// most 2.
 constexpr double kLeastShare = 1.0 / (2 * kPlacesOfEye);
-constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
-constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
+constexpr double kLeastGain = 1;  ///< log2 of the least gain in density: twice as dense
 
 /// A cell of the octree.
 struct Cell {
@@ -289,6 +288,7 @@ void aim_at_seen(const Tracer& tracer, const CameraView& view, const std::string
   SharePilot pilot(seen.spheres, around.places, kinds);
   pilot.look(tracer, table);
   give_shares(tracer.frame(), pilot.shares(), table);
+  table.openings = spheres_in_scene(pilot.openings(), tracer.frame().origin);
 }
 
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view, Lights::Which which) {

@@ -127,6 +127,7 @@ void decide_moving(const Deciding& about, StaticTree& tree, Decisions& d) {
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
+  d.static_ray_factor = choice.static_ray_factor;
   d.reasons.push_back({kMovingReason, choice.because});
 }
 
@@ -257,6 +258,7 @@ void copy_shot(const PlannedSegment& segment, const Decisions& shot, const Looke
   d.indirect = shot.indirect;
   d.caustic_map = shot.caustic_map;
   d.record_rays = shot.record_rays;
+  d.static_ray_factor = shot.static_ray_factor;
   d.pixel_error = shot.pixel_error;
   d.photon_paths = shot.photon_paths;
   if (d.indirect == IndirectMethod::paths) d.kinds = shot.caustic_map ? "caustic" : "";

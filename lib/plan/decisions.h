@@ -99,9 +99,10 @@ struct Decisions {
   bool caustic_map = false;  ///< true: visible caustic light is read from photons; false: camera paths find it
   std::uint64_t photon_paths = 700'000;  ///< light paths of a photon map
   int record_rays = 500;
-  double pixel_error = 0;    ///< --pixel-error of frames, if the wish leaves their pixels to the preset
-  double texture_width = 0;  ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
-  bool split = false;        ///< true: bright points are divided from the other points and sampled explicitly
+  int static_ray_factor = 1;  ///< gather rays of a static record over those of a record of one state of light
+  double pixel_error = 0;     ///< --pixel-error of frames, if the wish leaves their pixels to the preset
+  double texture_width = 0;   ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
+  bool split = false;         ///< true: bright points are divided from the other points and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
   double new_share = 0;  ///< mean share of a picture that the picture before does not show
   int together = 1;      ///< number of consecutive pictures whose cameras share records
@@ -119,6 +120,7 @@ struct Decisions {
   bool photons() const { return !kinds.empty(); }
   bool points() const { return photons() && indirect != IndirectMethod::paths; }
   bool records() const { return photons() && indirect == IndirectMethod::records; }
+  int static_rays() const { return static_ray_factor * record_rays; }
 };
 
 }  // namespace tempolux

@@ -91,9 +91,8 @@ void add_points(GraphBuilder& g, int lit, Command& c) {
 }
 
 /// The options of the commands that gather records: picture size, gather rays and the options of the wish.
-std::string record_words(const GraphBuilder& g, int lit) {
-  const std::string rays =
-      has_word(g.wish.records, "--rays") ? "" : " --rays " + std::to_string(g.decided(lit).record_rays);
+std::string record_words(const GraphBuilder& g, int record_rays) {
+  const std::string rays = has_word(g.wish.records, "--rays") ? "" : " --rays " + std::to_string(record_rays);
   return g.size + rays + (g.wish.records.empty() ? "" : " " + g.wish.records);
 }
 
@@ -123,7 +122,7 @@ std::string static_records(GraphBuilder& g, int frame) {
   c.state_words = " --frames " + joined(pictures);
   c.content += g.pinholes(pictures);
   c.file("--points", static_points(g, frame));
-  c.option(record_words(g, frame));
+  c.option(record_words(g, g.decided(frame).static_rays()));
   return g.add(stage_in("stands_cache"), pictures.size() == 1 ? kAnyFrame : pictures.front(), c);
 }
 
@@ -142,7 +141,7 @@ bool over_time(const GraphBuilder& g, int lit) {
 std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.pinholes(pictures)};
   add_points(g, lit, c);
-  c.option(record_words(g, lit));
+  c.option(record_words(g, g.decided(lit).record_rays));
   return g.add(stage_in("cache"), pictures.front(), c);
 }
 
@@ -159,7 +158,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
     states.push_back(frame);
   }
   for (const int frame : states) c.file("--dynamic", photon_map(g, frame));
-  c.option(record_words(g, lit));
+  c.option(record_words(g, g.decided(lit).record_rays));
   return g.add(stage_in("cache"), pictures.front(), c);
 }
 
@@ -173,7 +172,7 @@ std::string kept_records(GraphBuilder& g, int lit) {
   add_points(g, lit, c);
   const int before = state_before(g, lit);
   if (before < lit && over_time(g, before)) c.file("--previous", beside(record_file(g, before), ".radsamples"));
-  c.option(record_words(g, lit));
+  c.option(record_words(g, g.decided(lit).record_rays));
   return g.add(stage_in("kept"), lit, c);
 }
 

@@ -40,6 +40,7 @@ void each_decision(AnyDecisions& d, const Visit& visit) {
   visit("caustic_map", d.caustic_map);
   visit("paths", d.photon_paths);
   visit("rays", d.record_rays);
+  visit("static_ray_factor", d.static_ray_factor);
   visit("pixel_error", d.pixel_error);
   visit("texture_width", d.texture_width);
   visit("split", d.split);

@@ -44,11 +44,11 @@ std::string view_of(const std::vector<int>& frames, const std::string& kinds, co
     if (!states.insert(hash_of_texts({hashes.moving_geometry, hashes.materials, hashes.lights})).second) continue;
     EmissionTable table = source.emission(number);
     if (seen.worth_aiming) table.aim = spheres_in_scene(seen.spheres, frame.origin);
-    if (has_several_lights(frame, table)) pilot.look(Tracer(frame, tree), table);
+    if (frame.scene->has_distant_light() || has_several_lights(frame, table)) pilot.look(Tracer(frame, tree), table);
   }
   if (!seen.worth_aiming) seen.spheres.clear();
-  const formats::View view{std::move(seen.spheres), pilot.shares()};
-  return view.spheres.empty() && view.lights.empty() ? "" : formats::view_text(view);
+  const formats::View view{std::move(seen.spheres), pilot.openings(), pilot.shares()};
+  return view.spheres.empty() && view.openings.empty() && view.lights.empty() ? "" : formats::view_text(view);
 }
 
 }  // namespace tempolux

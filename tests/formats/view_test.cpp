@@ -11,6 +11,7 @@ namespace {
 
 TEST(View, ReadsBackToTheSameBits) {
   const View view{{{{0.5, -1.5, 3e-7}, 0.875, 0.0625}, {{1e20, 0.1, -0.0}, 1.0 / 3, 1}},
+                  {{{0.1, 0, 2}, 1e-9, 0.7}},
                   {{0, 0.1}, {7, 1e-7}, {ViewLight::kEnvironment, 0.5}}};
   const std::string text = view_text(view);
   const View read = parse_view(text, "view");
@@ -20,6 +21,10 @@ TEST(View, ReadsBackToTheSameBits) {
     EXPECT_EQ(read.spheres[i].radius, view.spheres[i].radius);
     EXPECT_EQ(read.spheres[i].weight, view.spheres[i].weight);
   }
+  ASSERT_EQ(read.openings.size(), 1u);
+  EXPECT_EQ(read.openings[0].centre, view.openings[0].centre);
+  EXPECT_EQ(read.openings[0].radius, view.openings[0].radius);
+  EXPECT_EQ(read.openings[0].weight, view.openings[0].weight);
   ASSERT_EQ(read.lights.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(read.lights[i].node, view.lights[i].node);
@@ -28,8 +33,9 @@ TEST(View, ReadsBackToTheSameBits) {
   EXPECT_EQ(view_text(read), text);
 }
 
-// Without lights a view is what version 1.0 was, byte by byte.
-TEST(View, WithoutLightsIsOfVersion1_0) {
+// Without lights and openings a view is what version 1.0 was, byte by byte; without openings what 1.1 was.
+TEST(View, IsOfTheFirstVersionThatHasItsLines) {
+  EXPECT_EQ(view_text({{}, {}, {{3, 1}}}), "tempolux view 1.1\nlight 3 1\n");
   EXPECT_EQ(view_text({}), "tempolux view 1.0\n");
   EXPECT_TRUE(parse_view(view_text({}), "view").spheres.empty());
 }
@@ -37,6 +43,7 @@ TEST(View, WithoutLightsIsOfVersion1_0) {
 TEST(View, WorkedExampleOfThePageIsWhatTheWriterWrites) {
   View view;
   view.spheres = {{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}};
+  view.openings = {{{4.5, 1.5, -1.5}, 0.4375, 0.5}};
   view.lights = {{12, 0.5}, {ViewLight::kEnvironment, 0.25}};
   const std::string text = view_text(view);
   EXPECT_NE(testing::load("../formats/plan/plan.md").find("\n\n" + testing::as_on_a_page(text) + "\n"),
@@ -45,9 +52,10 @@ TEST(View, WorkedExampleOfThePageIsWhatTheWriterWrites) {
 }
 
 TEST(View, RefusesWhatIsNone) {
-  const std::string first = "tempolux view 1.0\n", good = "0 0 0 1 1\n", second = "tempolux view 1.1\n";
-  std::string many = first, lights = second;
-  for (std::size_t i = 0; i <= kMaxViewSpheres; ++i) many += good;
+  const std::string first = "tempolux view 1.0\n", good = "0 0 0 1 1\n", second = "tempolux view 1.1\n",
+                    third = "tempolux view 1.2\n";
+  std::string many = first, lights = second, openings = third;
+  for (std::size_t i = 0; i <= kMaxViewSpheres; ++i) many += good, openings += "opening " + good;
   for (std::size_t i = 0; i <= kMaxViewLights; ++i) lights += "light 1 1\n";
   for (const auto& [text, line] : {std::pair<std::string, const char*>{"", "line 1"},
                                    {"tempolux view 2.0\n", "line 1"},
@@ -68,6 +76,11 @@ TEST(View, RefusesWhatIsNone) {
                                    {second + "light 4294967295 1\n", "line 2"},
                                    {second + "light sun 1\n", "line 2"},
                                    {second + "light environment 1 1\n", "line 2"},
+                                   {second + "opening 0 0 0 1 1\n", "line 2"},
+                                   {third + good + "opening 0 0 0 1\n", "line 3"},
+                                   {third + "opening 0 0 0 0 1\n", "line 2"},
+                                   {third + "opening\n", "line 2"},
+                                   {openings, "line 34"},
                                    {lights, "line 66"},
                                    {many, "line 34"}}) {
     try {

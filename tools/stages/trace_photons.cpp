@@ -78,6 +78,7 @@ EmissionTable PhotonTracing::aimed_emission(const SceneFrame& frame, int frame_n
   EmissionTable emission = input_.emission(frame.frame);
   const formats::View& view = importance_.at(frame_number);
   emission.aim = spheres_in_scene(view.spheres, frame.origin);
+  emission.openings = spheres_in_scene(view.openings, frame.origin);
   give_shares(frame, view.lights, emission);
   return emission;
 }
@@ -116,7 +117,7 @@ void PhotonTracing::finish(Output* output, const PhotonMapResult& result, std::u
 
 /// Warns if too few photons lie where the cameras look.
 void PhotonTracing::warn_of_few(const Lights& lights, const PhotonMapResult& result, int frame_number) {
-  if (lights.aim().empty()) return;
+  if (lights.aim().size() == 0) return;
   const std::uint64_t needed = kNeededPerSphere * lights.aim().size(), seen = result.seen_count;
   tool_.stats().count("photons_seen", double(seen));
   if (seen >= needed) return;

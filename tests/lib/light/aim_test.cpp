@@ -44,7 +44,7 @@ const Vec3 kTravel = normalize(Vec3{0.3f, -0.2f, -0.9f});
 
 /// The mean flux is that of the uniform disc, 1. No photon has more than 1 / kUniform of it.
 TEST(Aim, TheTotalIsThatOfTheUniformDisc) {
-  const Aim aim(kSpheres, {1, 2, 3}, 100);
+  const Aim aim(kSpheres, {}, {1, 2, 3}, 100);
   const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start(kTravel, u[0], u[1]).flux; });
   EXPECT_NEAR(total.mean, 1, 3 * total.error);
   EXPECT_LE(total.most, 1 / Aim::kUniform);
@@ -52,7 +52,7 @@ TEST(Aim, TheTotalIsThatOfTheUniformDisc) {
 
 /// A sphere half outside of the scene's sphere adds no light: photons that start outside the scene's disc are black.
 TEST(Aim, SpheresBeyondTheSceneAddNothing) {
-  const Aim aim(std::vector<AimSphere>{{{100, 0, 0}, 20, 1}}, {}, 100);
+  const Aim aim(std::vector<AimSphere>{{{100, 0, 0}, 20, 1}}, {}, {}, 100);
   const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start({0, 0, -1}, u[0], u[1]).flux; });
   EXPECT_NEAR(total.mean, 1, 3 * total.error);
 }
@@ -62,7 +62,7 @@ TEST(Aim, SpheresBeyondTheSceneAddNothing) {
 /// hundred million.
 TEST(Aim, ThroughAnyWindowGoesItsShare) {
   const Vec3 centre{1, 2, 3};
-  const Aim aim(kSpheres, centre, 100), wide;
+  const Aim aim(kSpheres, {}, centre, 100), wide;
   EXPECT_TRUE(wide.empty());
   struct Window {
     Vec3 middle;
@@ -83,8 +83,39 @@ TEST(Aim, ThroughAnyWindowGoesItsShare) {
   }
 }
 
+/// With openings, alone and beside spheres, the total is that of the uniform disc, and a window in an opening gets its
+/// share: a^2 / R^2 = 2.5e-5. density() is 1 / flux of the starts. Openings hold nothing, and no bounce is aimed at
+/// them.
+TEST(Aim, StartsPassOpenings) {
+  const std::vector<AimSphere> openings = {{{30, 10, 5}, 1, 3}, {{31, 10, 5}, 0.5, 1}};
+  const Vec3 centre{1, 2, 3}, window{30.5f, 10, 5};
+  for (const std::vector<AimSphere>& spheres : {std::vector<AimSphere>{}, kSpheres}) {
+    const Aim aim(spheres, openings, centre, 100);
+    EXPECT_FALSE(aim.empty());
+    EXPECT_EQ(aim.size(), spheres.size());
+    int other = 0;  // starts at a rim, where rounding decides
+    const Estimate total = estimate(1 << 18, [&](const auto& u) {
+      const Aim::Start start = aim.start(kTravel, u[0], u[1]);
+      other += start.flux > 0 && std::abs(start.flux * aim.density(start.origin + kTravel * 100, kTravel) - 1) > 1e-4;
+      return start.flux;
+    });
+    EXPECT_LT(other, 64);
+    EXPECT_NEAR(total.mean, 1, 3 * total.error);
+    EXPECT_LE(total.most, 1 / Aim::kUniform);
+    const Estimate through = estimate(1 << 18, [&](const auto& u) {
+      const Aim::Start start = aim.start(kTravel, u[0], u[1]);
+      const Vec3 to = window - start.origin, off = to - kTravel * dot(to, kTravel);
+      return dot(off, off) < 0.25f ? start.flux : 0;
+    });
+    EXPECT_NEAR(through.mean, 2.5e-5, 3 * through.error);
+    EXPECT_LT(through.error, 0.01 * 2.5e-5) << "uniform starts have an error of 39 %";
+    EXPECT_FALSE(aim.holds({30, 10, 5}));
+    EXPECT_EQ(aim.aims_from({90, 0, 0}), !spheres.empty());
+  }
+}
+
 TEST(Aim, HoldsWhatLiesInASphere) {
-  const Aim aim(kSpheres, {1, 2, 3}, 100);
+  const Aim aim(kSpheres, {}, {1, 2, 3}, 100);
   EXPECT_TRUE(aim.holds({10, 2.9f, 5}));
   EXPECT_TRUE(aim.holds({-60, 20.4f, 0}));
   EXPECT_FALSE(aim.holds({-60, 20.6f, 0}));
@@ -139,7 +170,7 @@ TEST_F(ThroughTheRoof, OfTheSky) {
 TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   const Vec3 place{40, -30, 20};
   const auto solid_angle = [](double r, double d) { return 2 * kPiD * (1 - std::sqrt(1 - r * r / (d * d))); };
-  const Aim one(std::vector<AimSphere>{{{10, 10, -5}, 4, 2}}, {1, 2, 3}, 100);
+  const Aim one(std::vector<AimSphere>{{{10, 10, -5}, 4, 2}}, {}, {1, 2, 3}, 100);
   const double far = length(Vec3d(place) - Vec3d{10, 10, -5});
   for (int i = 0; i < 1000; ++i) {
     const Aim::Way way = one.towards(place, PathRandom(3, std::uint64_t(i)).get2(0, Purpose::test));
@@ -148,7 +179,7 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
     const Vec3 to = Vec3{10, 10, -5} - place;
     EXPECT_LE(length(cross(to, way.direction)), 4 * (1 + 1e-5f));
   }
-  const Aim two(std::vector<AimSphere>{{{40, -30, 0}, 3, 1}, {{40, -30, -20}, 2, 4}}, {1, 2, 3}, 100);
+  const Aim two(std::vector<AimSphere>{{{40, -30, 0}, 3, 1}, {{40, -30, -20}, 2, 4}}, {}, {1, 2, 3}, 100);
   int other = 0;  // directions at a rim, where rounding decides
   const Estimate angle = estimate(1 << 16, [&](const auto& u) {
     const Aim::Way way = two.towards(place, {float(u[0]), float(u[1])});
@@ -163,7 +194,7 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
 /// alone, with the pdf of its cone; inside the room they are not aimed, nor between rooms of about one size.
 TEST(Aim, BouncesOnTheGroundAreAimedAtTheRoomInsideIt) {
   const std::vector<AimSphere> spheres{{{0, 0, 0}, 50, 3}, {{10, 0, 0}, 2, 1}, {{13, 0, 0}, 3, 1}};
-  const Aim aim(spheres, {}, 100);
+  const Aim aim(spheres, {}, {}, 100);
   EXPECT_TRUE(aim.aims_from({-20, 0, 0}));
   EXPECT_TRUE(aim.aims_from({80, 0, 0}));
   EXPECT_FALSE(aim.aims_from({9, 0, 0}));

@@ -108,6 +108,22 @@ TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   EXPECT_EQ(uniform.seen, 0u);
 }
 
+/// The same with openings, alone and beside spheres.
+TEST(AimedPhotons, PassOpeningsWithTheLightOfUniformOnes) {
+  const Hut hut;
+  const Inside uniform = inside(hut, hut.table, 1'500'000);
+  for (const bool spheres : {false, true}) {
+    EmissionTable aimed = hut.table;
+    if (spheres) aimed.aim = {{{-1, 1, 0}, 1.75, 0.4}, {{1, 1, 0}, 1.75, 0.4}, {{0, 2, 3}, 3, 0.2}};
+    aimed.openings = {{{0, 1.5, 2}, 1, 0.6}, {{1, 1, 0}, 2, 0.4}};
+    const Inside few = inside(hut, aimed, 150'000);
+    EXPECT_NEAR(few.direct, uniform.direct, 3 * std::hypot(few.direct_error, uniform.direct_error));
+    EXPECT_NEAR(few.indirect, uniform.indirect, 3 * std::hypot(few.indirect_error, uniform.indirect_error));
+    EXPECT_NEAR(few.emitted, uniform.emitted, 3 * few.emitted_error + 1e-3 * uniform.emitted);
+    EXPECT_GT(few.photons, uniform.photons / 10);
+  }
+}
+
 /// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, inside a sphere: of the light that the ground
 /// reflects it receives rho E / 2 (1 - 4 d / pi), d = 1 / 300 its mean height over the ground's reach. Bounces outside
 /// the sphere are aimed at it, so no photon on the wall carries much flux. The heaviest starts on the innermost of the

@@ -1,0 +1,117 @@
+#include "lib/pilot/find_openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "lib/pilot/seen_spheres.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kLeastOpeningGain = 1.25;  ///< in the variance; as kLeastGain of the shares of lights
+constexpr std::size_t kFewestStarts = 64;   ///< that choose the spheres; two for each sphere
+constexpr std::size_t kMostStarts = 2048;   ///< that choose, and that measure: bounds the time of the search
+constexpr int kLevels = 6;                  ///< of lattices: the smallest cells have 1/64 of the scene's radius
+
+/// Indices of a cell of a lattice, the lattice's level first: its edge is 2^level m.
+using CellIndex = std::array<int, 4>;
+
+Vec3d centre_of(const CellIndex& cell) {
+  const auto middle = [&](std::size_t axis) { return std::ldexp(cell[axis] + 0.5, cell[0]); };
+  return {middle(1), middle(2), middle(3)};
+}
+
+double radius_of(const CellIndex& cell) { return kRadiusOfCell * std::ldexp(1.0, cell[0]); }
+
+bool passes(const DistantStart& start, Vec3d centre, double radius) {
+  return length2(cross(centre - start.origin, start.travel)) < radius * radius;
+}
+
+double weight2(const DistantStart& start) { return start.value2 * start.density; }
+
+/// Every n-th start, so that at most kMostStarts are left; those with even or with odd places.
+std::vector<DistantStart> some_of(std::span<const DistantStart> starts, std::size_t first) {
+  std::vector<DistantStart> some;
+  const std::size_t step = 2 * ((starts.size() + 2 * kMostStarts - 1) / (2 * kMostStarts));
+  for (std::size_t i = first; i < starts.size(); i += step) some.push_back(starts[i]);
+  return some;
+}
+
+/// For each cell the starts whose lines pass it inside the scene's sphere (`centre` in world space, `radius`, m).
+std::map<CellIndex, std::vector<std::size_t>> cells_passed(std::span<const DistantStart> starts, Vec3d centre,
+                                                           double radius) {
+  std::map<CellIndex, std::vector<std::size_t>> cells;
+  const int top = std::ilogb(radius) - 1;
+  for (int level = top; level > top - kLevels; --level) {
+    const double step = std::ldexp(0.5, level);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const double middle = dot(centre - starts[i].origin, starts[i].travel);
+      for (double along = middle - radius; along <= middle + radius; along += step) {
+        const Vec3d at = starts[i].origin + starts[i].travel * along;
+        const auto index = [&](double x) { return int(std::floor(std::ldexp(x, -level))); };
+        std::vector<std::size_t>& passing = cells[{level, index(at.x), index(at.y), index(at.z)}];
+        if (passing.empty() || passing.back() != i) passing.push_back(i);
+      }
+    }
+  }
+  return cells;
+}
+
+/// The chosen spheres with their weights.
+std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, Vec3d centre, double radius) {
+  const auto cells = cells_passed(starts, centre, radius);
+  const std::size_t fewest = starts.size() / formats::kMaxViewSpheres;
+  std::vector<bool> held(starts.size());
+  std::vector<formats::ViewSphere> spheres;
+  double whole = 0;
+  while (spheres.size() < formats::kMaxViewSpheres) {
+    double best = 0;
+    const CellIndex* chosen = nullptr;
+    for (const auto& [cell, passing] : cells) {
+      std::size_t left = 0;
+      double sum = 0;
+      for (const std::size_t i : passing)
+        if (!held[i]) ++left, sum += weight2(starts[i]);
+      const double size = std::ldexp(1.0, cell[0]);
+      if (left > fewest && sum > best * size * size) best = sum / (size * size), chosen = &cell;
+    }
+    if (!chosen) break;
+    formats::ViewSphere sphere{.centre = array_of(centre_of(*chosen)), .radius = radius_of(*chosen)};
+    double sum = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      if (!held[i] && passes(starts[i], vec_of(sphere.centre), sphere.radius))
+        held[i] = true, sum += weight2(starts[i]);
+    sphere.weight = sphere.radius * std::sqrt(sum);
+    whole += sphere.weight;
+    spheres.push_back(sphere);
+  }
+  for (formats::ViewSphere& sphere : spheres) sphere.weight = std::exp2(std::round(std::log2(sphere.weight / whole)));
+  std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
+  return spheres;
+}
+
+/// V of find_openings().
+double variance_with(const Aim& aim, std::span<const DistantStart> starts, Vec3d origin) {
+  double before = 0, after = 0;
+  for (const DistantStart& start : starts) {
+    before += start.value2;
+    after += start.value2 * start.density / aim.density(Vec3(start.origin - origin), Vec3(start.travel));
+  }
+  return after / before;
+}
+
+}  // namespace
+
+std::vector<formats::ViewSphere> find_openings(std::span<const DistantStart> starts, const EmissionTable& table,
+                                               Vec3d origin) {
+  const std::vector<DistantStart> choosing = some_of(starts, 0), measuring = some_of(starts, 1);
+  if (choosing.size() < kFewestStarts || !(table.sphere_radius > 0)) return {};
+  std::vector<formats::ViewSphere> openings = choose(choosing, table.sphere_centre + origin, table.sphere_radius);
+  const Aim aim(table.aim, spheres_in_scene(openings, origin), Vec3(table.sphere_centre), table.sphere_radius);
+  if (openings.empty() || !(kLeastOpeningGain * variance_with(aim, measuring, origin) < 1)) openings.clear();
+  return openings;
+}
+
+}  // namespace tempolux
