@@ -91,7 +91,8 @@ void add_options(tools::Tool& tool, Options& options) {
       "--dynamic", options.dynamic,
       "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
       "frames may follow: where movers changed the light in those frames, records are gathered anew, too");
-  tool.number_option("--light-samples", options.point.light_samples, 1, 4096, "shadow rays per point for direct light");
+  tool.number_option("--light-samples", options.light_samples, 0, 4096,
+                     "shadow rays per point for direct light; 0: 4, or 16 where light of sun and sky passes openings");
   tool.number_option("--rays", options.gather.rays, 1, 1 << 20,
                      "gather rays per record, one through each cell of its hemisphere");
   tool.number_option(
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
     // Options with the frame's seed, the same for a single frame and for a range.
     const auto seeded = [&](int frame) -> const Options& {
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
-      if (makes_points) options.view = importance->at(frame).spheres;
+      if (makes_points) options.take(importance->at(frame));
       return options;
     };
     tool.stats().phase("load");

@@ -13,6 +13,10 @@
 
 namespace tempolux::tools {
 
+/// Shadow rays of a point where light passes openings. Measured in S8 (docs/methods/records.md): 4 leave light of
+/// points whose noise all records share.
+inline constexpr int kOpeningSamples = 16;
+
 /// The options of irradcache-build.
 struct CacheOptions {
   std::vector<std::string> inputs;  ///< [points|records] SCENE
@@ -20,6 +24,7 @@ struct CacheOptions {
   std::vector<std::string> dynamic;  ///< the frame's own map comes first
   std::uint64_t point_count = PointOptions{}.count;
   std::vector<formats::ViewSphere> view;  ///< spheres that --importance names
+  int light_samples = 0;                  ///< of a point; 0: those that suit the view
   int width = 640, height = 360;
   PointOptions point;
   GatherOptions gather;
@@ -28,6 +33,14 @@ struct CacheOptions {
   /// "points", "records", or "both" without a step.
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }
+  /// Takes the view of a frame. Without --light-samples, points get kOpeningSamples where light of sun and sky passes
+  /// openings, since most shadow rays then miss them.
+  void take(const formats::View& of_frame) {
+    view = of_frame.spheres;
+    point.light_samples = light_samples > 0           ? light_samples
+                          : of_frame.openings.empty() ? PointOptions{}.light_samples
+                                                      : kOpeningSamples;
+  }
   /// Options for the points of a frame.
   PointOptions points_of(const SceneFrame& frame) const {
     PointOptions options = point;
