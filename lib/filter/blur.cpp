@@ -21,7 +21,8 @@ constexpr std::size_t kOthers = 4;  ///< motions of the surfaces around a tile t
 /// Neighbouring pixels whose motions differ by more pixels show different surfaces.
 constexpr float kTorn = 1;
 
-/// A moment of the shutter [frames], a place on the lens, which is a disc of radius 1, and a place in the pixel.
+/// A moment of the shutter [frames], a place on the lens, which is a disc of radius 1, and numbers in [0, 1) by which
+/// shifts are rounded to pixels.
 struct Sample {
   float t, x, y, right, down;
 };
@@ -59,7 +60,8 @@ struct Tile {
 struct Around {
   std::array<Motion, kOthers> others;
   std::size_t count = 0;
-  float reach = 0;  ///< pixels; of all that may be seen in the tile
+  bool torn = false;  ///< the border of a surface is among what may be seen
+  float reach = 0;    ///< pixels; of all that may be seen in the tile
   const std::vector<Sample>* samples = nullptr;
 };
 
@@ -76,6 +78,26 @@ float fraction(float x) { return x - std::floor(x); }
 float gradient_noise(int x, int y) {
   return fraction(52.9829189f * fraction(0.06711056f * float(x) + 0.00583715f * float(y)));
 }
+
+/// A shift between two shifts in whole pixels. `share` belongs to the farther one, so that the mean square of both is
+/// that of the shift: then blur has the right width. (The share that keeps the mean would blur what moves by a part of
+/// a pixel by as much as a pixel.)
+struct Shift {
+  int near, far;
+  float share;
+
+  explicit Shift(float shift) {
+    const float way = std::abs(shift), whole = std::floor(way), rest = way - whole;
+    near = int(whole);
+    far = near + 1;
+    if (shift < 0) {
+      near = -near;
+      far = -far;
+    }
+    share = rest * (2 * whole + rest) / (2 * whole + 1);
+  }
+  int rounded(float u) const { return u < share ? far : near; }
+};
 
 /// `count` samples: Halton's sequence in time and in the pixel, a spiral of golden angles on the lens.
 std::vector<Sample> samples_of(int count) {
@@ -103,6 +125,7 @@ class Blur {
   Tile tile_of(int tile_x, int tile_y) const;
   Around around(int tile_x, int tile_y) const;
   void look(const Motion& start, int x, int y, const Sample& sample, Found& found) const;
+  void add_between(int x, int y, Shift right, Shift down, float share, Colour& sum) const;
   Colour blurred(const Around& around, int x, int y) const;
 
   int width_, height_, tiles_x_, tiles_y_;
@@ -204,7 +227,6 @@ Tile Blur::tile_of(int tile_x, int tile_y) const {
 /// differ.
 Around Blur::around(int tile_x, int tile_y) const {
   Around around;
-  bool torn = false;
   const int tiles = 1 + int(longest_) / kTile;
   const auto each = [&](const auto& body) {
     for (int y = std::max(0, tile_y - tiles); y <= std::min(tiles_y_ - 1, tile_y + tiles); ++y)
@@ -216,12 +238,12 @@ Around Blur::around(int tile_x, int tile_y) const {
   };
   each([&](const Tile& tile) {
     around.reach = std::max(around.reach, tile.reach);
-    torn = torn || tile.torn;
+    around.torn = around.torn || tile.torn;
   });
   const auto wanted = std::bit_ceil(std::uint32_t(2 * around.reach));
-  around.samples =
-      &samples_[std::size_t(std::clamp(std::countr_zero(wanted) - kFewestBits, 0, int(samples_.size()) - 1))];
-  if (!torn) return around;
+  const int bits = around.torn ? kMostBits : std::clamp(std::countr_zero(wanted), kFewestBits, kMostBits);
+  around.samples = &samples_[std::size_t(bits - kFewestBits)];
+  if (!around.torn) return around;
   std::array<float, kOthers> reaches{};
   const auto add = [&](const Motion& m) {
     const float r = reach(m);
@@ -244,17 +266,17 @@ Around Blur::around(int tile_x, int tile_y) const {
   return around;
 }
 
-/// Looks for a pixel that covers the sample's place in pixel (x, y) at its moment, seen through its place of the lens:
-/// a fixed point q = place - motion(q) [Bowles et al., Iterative Image Warping, 2012]. Where a surface is stretched,
-/// the search ends between two pixels of one object.
+/// Looks for a pixel that is at (x, y) at the sample's moment, seen through its place of the lens: a fixed point
+/// q = p - motion(q) [Bowles et al., Iterative Image Warping, 2012]. Where a surface is stretched, the search ends
+/// between two pixels of one object.
 void Blur::look(const Motion& start, int x, int y, const Sample& sample, Found& found) const {
   const Motion* m = &start;
-  const float px = float(x) + sample.right, py = float(y) + sample.down;
   int column = -2, row = -2;
   for (int i = 0; i < 3; ++i) {
-    const float qx = px - m->right(sample), qy = py - m->down(sample);
-    const bool outside = !(qx >= 0 && qy >= 0 && qx < float(width_) && qy < float(height_));
-    const int next_column = std::clamp(int(qx), 0, width_ - 1), next_row = std::clamp(int(qy), 0, height_ - 1);
+    const int qx = x - Shift(m->right(sample)).rounded(sample.right),
+              qy = y - Shift(m->down(sample)).rounded(sample.down);
+    const bool outside = qx < 0 || qy < 0 || qx >= width_ || qy >= height_;
+    const int next_column = std::clamp(qx, 0, width_ - 1), next_row = std::clamp(qy, 0, height_ - 1);
     const bool here = next_column == column && next_row == row;
     const bool beside = std::abs(next_column - column) <= 1 && std::abs(next_row - row) <= 1;
     const std::size_t q = at(next_column, next_row);
@@ -276,6 +298,17 @@ void Blur::look(const Motion& start, int x, int y, const Sample& sample, Found& 
   }
 }
 
+/// Adds the colours of the four pixels between which (x, y) is after both shifts.
+void Blur::add_between(int x, int y, Shift right, Shift down, float share, Colour& sum) const {
+  const auto column = [&](int by) { return std::clamp(x - by, 0, width_ - 1); };
+  const auto row = [&](int by) { return std::clamp(y - by, 0, height_ - 1); };
+  const int near = column(right.near), far = column(right.far), above = row(down.near), below = row(down.far);
+  sum.add(colour_[at(near, above)], share * (1 - right.share) * (1 - down.share));
+  sum.add(colour_[at(far, above)], share * right.share * (1 - down.share));
+  sum.add(colour_[at(near, below)], share * (1 - right.share) * down.share);
+  sum.add(colour_[at(far, below)], share * right.share * down.share);
+}
+
 Colour Blur::blurred(const Around& around, int x, int y) const {
   const std::size_t p = at(x, y);
   const float jitter = gradient_noise(x, y), place = gradient_noise(y, x);
@@ -285,12 +318,17 @@ Colour Blur::blurred(const Around& around, int x, int y) const {
   for (const Sample& one : *around.samples) {
     const Sample sample{opens + open * fraction(one.t + jitter), one.x * cosine - one.y * sine,
                         one.x * sine + one.y * cosine, fraction(one.right + place), fraction(one.down + place)};
+    const float share = 1 / float(around.samples->size());
+    if (!around.torn) {
+      add_between(x, y, Shift(motion_[p].right(sample)), Shift(motion_[p].down(sample)), share, sum);
+      continue;
+    }
     Found found;
     found.farthest = p;
     found.farthest_nearness = motion_[p].nearness;
     look(motion_[p], x, y, sample, found);
     for (std::size_t o = 0; o < around.count; ++o) look(around.others[o], x, y, sample, found);
-    sum.add(colour_[found.landed_nearness >= 0 ? found.landed : found.farthest], 1 / float(around.samples->size()));
+    sum.add(colour_[found.landed_nearness >= 0 ? found.landed : found.farthest], share);
   }
   return sum;
 }
