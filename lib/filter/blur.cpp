@@ -84,19 +84,18 @@ float gradient_noise(int x, int y) {
 /// a pixel by as much as a pixel.)
 struct Shift {
   int near, far;
-  float share;
+  float part, whole;  ///< share = part / whole
 
   explicit Shift(float shift) {
-    const float way = std::abs(shift), whole = std::floor(way), rest = way - whole;
-    near = int(whole);
-    far = near + 1;
-    if (shift < 0) {
-      near = -near;
-      far = -far;
-    }
-    share = rest * (2 * whole + rest) / (2 * whole + 1);
+    const int steps = int(std::abs(shift));
+    const float rest = std::abs(shift) - float(steps), sign = std::copysign(1.0f, shift);
+    near = int(sign) * steps;
+    far = int(sign) * (steps + 1);
+    part = rest * (float(2 * steps) + rest);
+    whole = float(2 * steps + 1);
   }
-  int rounded(float u) const { return u < share ? far : near; }
+  float share() const { return part / whole; }
+  int rounded(float u) const { return u * whole < part ? far : near; }
 };
 
 /// `count` samples: Halton's sequence in time and in the pixel, a spiral of golden angles on the lens.
@@ -195,7 +194,8 @@ float Blur::reach(const Motion& m) const { return apart(m, {}); }
 /// Largest distance between the places of two motions from one pixel.
 float Blur::apart(const Motion& a, const Motion& b) const {
   const auto way = [&](float t) {
-    return std::hypot((a.u - b.u + (a.bend_u - b.bend_u) * t) * t, (a.v - b.v + (a.bend_v - b.bend_v) * t) * t);
+    const float u = (a.u - b.u + (a.bend_u - b.bend_u) * t) * t, v = (a.v - b.v + (a.bend_v - b.bend_v) * t) * t;
+    return std::sqrt(u * u + v * v);
   };
   return std::max(way(float(options_.opens)), way(float(options_.closes))) + std::abs(a.disc - b.disc);
 }
@@ -303,10 +303,10 @@ void Blur::add_between(int x, int y, Shift right, Shift down, float share, Colou
   const auto column = [&](int by) { return std::clamp(x - by, 0, width_ - 1); };
   const auto row = [&](int by) { return std::clamp(y - by, 0, height_ - 1); };
   const int near = column(right.near), far = column(right.far), above = row(down.near), below = row(down.far);
-  sum.add(colour_[at(near, above)], share * (1 - right.share) * (1 - down.share));
-  sum.add(colour_[at(far, above)], share * right.share * (1 - down.share));
-  sum.add(colour_[at(near, below)], share * (1 - right.share) * down.share);
-  sum.add(colour_[at(far, below)], share * right.share * down.share);
+  sum.add(colour_[at(near, above)], share * (1 - right.share()) * (1 - down.share()));
+  sum.add(colour_[at(far, above)], share * right.share() * (1 - down.share()));
+  sum.add(colour_[at(near, below)], share * (1 - right.share()) * down.share());
+  sum.add(colour_[at(far, below)], share * right.share() * down.share());
 }
 
 Colour Blur::blurred(const Around& around, int x, int y) const {

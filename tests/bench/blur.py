@@ -4,7 +4,7 @@
     python3 -B tests/bench/blur.py --bin build/release/bin --out /tmp/blur --scenes S2,S4,evening_shot
 
 For each scene, two seeds of everything: the chain's sharp frame, and its frames under a shutter of 180 degrees, a lens of
-f/2.8 that is focused on the median depth, and both. Files that exist are used again. Printed in 8-bit sRGB codes, for
+f/2.8 that is focused on the median depth, both, and much of both: 720 degrees and f/0.35. Files that exist are used again. Printed in 8-bit sRGB codes, for
 single pixels and boxes of 5x5 and 15x15: the difference to the rendered frame of the other seed, less the variance of
 that frame, of the sharp frame and of the sharp frame blurred.
 """
@@ -24,8 +24,12 @@ import pixels
 
 TOP = Path(__file__).resolve().parents[2]
 SEEDS = (1, 2)
-LENS, SHUTTER = {"FSTOP": 2.8}, {"SHUTTER": 180}
-KINDS = {"shutter": SHUTTER, "lens": LENS, "both": SHUTTER | LENS}
+KINDS = {
+    "shutter": {"SHUTTER": 180},
+    "lens": {"FSTOP": 2.8},
+    "both": {"SHUTTER": 180, "FSTOP": 2.8},
+    "much": {"SHUTTER": 720, "FSTOP": 0.35},
+}
 
 
 def rendered(options, name, seed, kind, wish):
@@ -47,9 +51,9 @@ def blurred(options, file, kind, focus):
     out = file.with_name(f"{kind}.of-sharp.exr")
     words = []
     if "SHUTTER" in KINDS[kind]:
-        words += ["--shutter", 180]
+        words += ["--shutter", KINDS[kind]["SHUTTER"]]
     if "FSTOP" in KINDS[kind]:
-        words += ["--f-stop", 2.8, "--focus", focus]
+        words += ["--f-stop", KINDS[kind]["FSTOP"], "--focus", focus]
     subprocess.run([options.bin / "st-filter", "blur", file, *map(str, words), "-o", out, "-q"], check=True)
     return out
 
