@@ -17,8 +17,8 @@ struct BlurOptions {
 /// Pixels that the way of a point while the shutter is open, or its disc, may be long. Longer ones are shortened.
 inline constexpr float kLongestBlur = 512;
 
-/// Blurs R, G, B and A. Z says what is in front, `flow` where it moves. Z, N, P, id and motion stay sharp; channels that
-/// would no longer fit, such as layers, are removed. Throws InputError if the image has no R, G, B or no Z.
+/// Blurs R, G, B and A. Z says what is in front, `flow` where it moves. Z, N, P, id and motion stay sharp; channels
+/// that would no longer fit, such as layers, are removed. Throws InputError if the image has no R, G, B or no Z.
 Image blur_frame(Image image, const FlowFrame& flow, const BlurOptions& options);
 
 }  // namespace tempolux

@@ -41,4 +41,22 @@ expect 0 '' $cached --shutter 180
 expect 2 'made for another state of the scene' $cached --shutter 180 --shutter-open begin
 photons --shutter 180 --shutter-open begin
 expect 0 '' $cached --shutter 180 --shutter-open begin
+# Blur made from a sharp frame.
+whole --channels RGBA,Z,id,motion
+mv made.exr sharp.exr
+whole
+mv made.exr still.exr
+blur="$BUILD/bin/st-filter blur sharp.exr -q -o blurred.exr"
+expect 2 'neither blurs anything' $blur
+expect 2 'no distance is sharp' $blur --f-stop 2
+expect 2 'must be a distance' $blur --f-stop 2 --focus 0
+expect 2 'excludes' $blur --f-stop 2 --lens-radius 1 --focus 2
+for look in '--shutter 3600' '--lens-radius 1000 --focus 1e9' '--f-stop .001 --focus inf' '--shutter 180 --f-stop 1 --focus 2'; do
+  expect 0 '' $blur $look --threads 1
+  "$BUILD/bin/tempolux-info" --check blurred.exr > /dev/null || bad "no valid picture: blur $look"
+  one=$("$BUILD/bin/tempolux-info" --digest blurred.exr | cut -d' ' -f1)
+  expect 0 '' $blur $look --threads 3
+  [ "$("$BUILD/bin/tempolux-info" --digest blurred.exr | cut -d' ' -f1)" = "$one" ] || bad "depends on threads: blur $look"
+done
+expect 2 'no flow' "$BUILD/bin/st-filter" blur still.exr --shutter 180 -q -o blurred.exr
 exit $failed
