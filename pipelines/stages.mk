@@ -14,13 +14,13 @@ export PLAN
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
 shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment "$$SKY"} \
-  $${VOLUME:+--volume "$$VOLUME"} $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME
-export TEMPOLUX_SAID = state/warnings# warnings of scene-plan: the stages do not repeat them
-scene  = "$$SCENE" $(words) $(shared)
-drawn  = $(scene) $(seed)
-seen   = $(drawn) --camera "$$CAMERA" $(lens)
-lens   = $${FSTOP:+--f-stop "$$FSTOP"} $${FOCUS:+--focus "$$FOCUS"} $${SENSOR_WIDTH:+--sensor-width "$$SENSOR_WIDTH"} \
+  $${VOLUME:+--volume "$$VOLUME"} $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME \
   $${SHUTTER:+--shutter "$$SHUTTER"} $${SHUTTER_OPEN:+--shutter-open "$$SHUTTER_OPEN"}
+export TEMPOLUX_SAID = state/warnings# warnings of scene-plan: the stages do not repeat them
+scene  = "$$SCENE" $(words) $(shared) --camera "$$CAMERA"
+drawn  = $(scene) $(seed)
+seen   = $(drawn) $(lens)
+lens   = $${FSTOP:+--f-stop "$$FSTOP"} $${FOCUS:+--focus "$$FOCUS"} $${SENSOR_WIDTH:+--sensor-width "$$SENSOR_WIDTH"}
 # Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
 seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
 # Words about the command; run.sh counts them before. With RUN it may wait in a queue, so made.sh says them when it has

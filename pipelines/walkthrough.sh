@@ -28,7 +28,7 @@ makes() {
   name=$2; shift 2
   eval "set -- \"\$@\" $SHARED"
   # shellcheck disable=SC2086
-  made $files -- $RUN "$BIN/$name" "$@" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"} ${SHUTTER:+--shutter "$SHUTTER"}
+  made $files -- $RUN "$BIN/$name" "$@" --camera "$CAMERA" ${FSTOP:+--f-stop "$FSTOP"}
 }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }

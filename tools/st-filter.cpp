@@ -3,6 +3,7 @@
 //     st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o 10.exr
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
 //     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/stages/filter_mesh.h)
+//     st-filter blur f.####.exr --frames 0-47 --shutter 180 -o blurred.####.exr        (tools/stages/blur_frames.h)
 //
 // Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How:
 // docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
@@ -10,6 +11,7 @@
 
 #include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"
+#include "tools/stages/blur_frames.h"
 #include "tools/stages/filter_frames.h"
 #include "tools/stages/filter_mesh.h"
 
@@ -17,6 +19,7 @@ using namespace tempolux;
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
+  if (argc > 1 && std::string_view(argv[1]) == "blur") return tools::blur_frames(argc - 1, argv + 1);
   tools::Tool tool("st-filter",
                    "Filter frames in space and along the pixel flow, where halves of their samples show that it helps.",
                    argc, argv);

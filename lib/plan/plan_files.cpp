@@ -233,11 +233,11 @@ std::vector<std::string> command_of(const GraphFile& file, const PlanContext& co
   std::vector<std::string> words = words_of(stage.command);
   if (stage.sees >= Sees::scene) words.push_back(context.scene);
   std::ranges::copy(words_of(file.words), std::back_inserter(words));
-  if (stage.sees >= Sees::scene) std::ranges::copy(context.options, std::back_inserter(words));
-  if (stage.sees >= Sees::camera) {
+  if (stage.sees >= Sees::scene) {
+    std::ranges::copy(context.options, std::back_inserter(words));
     words.insert(words.end(), {"--camera", context.camera});
-    std::ranges::copy(context.lens, std::back_inserter(words));
   }
+  if (stage.sees >= Sees::camera) std::ranges::copy(context.lens, std::back_inserter(words));
   std::ranges::copy(words_of(outputs_of(stage, stem_of(file.name))), std::back_inserter(words));
   return words;
 }

@@ -14,9 +14,9 @@ namespace tempolux {
 /// the values before it.
 enum class Sees : std::uint8_t {
   files,   ///< no option: the command reads files of earlier stages only
-  scene,   ///< the scene, and the options of all tools that read a scene
+  scene,   ///< the scene, and the options of all tools that read a scene, with the camera and its shutter
   drawn,   ///< the seed: the command draws random numbers
-  camera,  ///< the camera and its lens
+  camera,  ///< the camera's lens
 };
 
 /// The part of the work that a stage belongs to.

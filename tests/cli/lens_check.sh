@@ -33,9 +33,30 @@ whole --f-stop 0 --shutter 0; [ "$(digest)" = "$sharp" ] || bad 'options that tu
 whole --shutter 180 --threads 1; one=$(digest)
 whole --shutter 180 --threads 3; [ "$(digest)" = "$one" ] || bad 'a blurred picture depends on the number of threads'
 [ "$one" != "$sharp" ] || bad 'a shutter changes nothing'
-# Stored light belongs to the frame's time, which must be the middle of the shutter.
-"$BUILD/bin/photon-trace" "$scene" --frame 10 --photons 1k -q -o light.photons || bad 'no photons'
+# Stored light belongs to the middle of the shutter. Where the shutter opens at the frame's time, this is another time.
+photons() { "$BUILD/bin/photon-trace" "$scene" --frame 10 --photons 1k -q -o light.photons "$@" || bad 'no photons'; }
 cached="$BUILD/bin/frame-render $scene --frame 10 --size 16x9 --spp 4 --integrator photons --photons light.photons -q -o made.exr"
-expect 2 'give --shutter-open centre' $cached --shutter 180 --shutter-open begin
+photons
 expect 0 '' $cached --shutter 180
+expect 2 'made for another state of the scene' $cached --shutter 180 --shutter-open begin
+photons --shutter 180 --shutter-open begin
+expect 0 '' $cached --shutter 180 --shutter-open begin
+# Blur made from a sharp frame.
+whole --channels RGBA,Z,id,motion
+mv made.exr sharp.exr
+whole
+mv made.exr still.exr
+blur="$BUILD/bin/st-filter blur sharp.exr -q -o blurred.exr"
+expect 2 'neither blurs anything' $blur
+expect 2 'no distance is sharp' $blur --f-stop 2
+expect 2 'must be a distance' $blur --f-stop 2 --focus 0
+expect 2 'excludes' $blur --f-stop 2 --lens-radius 1 --focus 2
+for look in '--shutter 3600' '--lens-radius 1000 --focus 1e9' '--f-stop .001 --focus inf' '--shutter 180 --f-stop 1 --focus 2'; do
+  expect 0 '' $blur $look --threads 1
+  "$BUILD/bin/tempolux-info" --check blurred.exr > /dev/null || bad "no valid picture: blur $look"
+  one=$("$BUILD/bin/tempolux-info" --digest blurred.exr | cut -d' ' -f1)
+  expect 0 '' $blur $look --threads 3
+  [ "$("$BUILD/bin/tempolux-info" --digest blurred.exr | cut -d' ' -f1)" = "$one" ] || bad "depends on threads: blur $look"
+done
+expect 2 'no flow' "$BUILD/bin/st-filter" blur still.exr --shutter 180 -q -o blurred.exr
 exit $failed

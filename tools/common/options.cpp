@@ -208,15 +208,19 @@ void Tool::camera_options() {
                       "[as the scene says, or 36]"))
       ->type_name("MM")
       ->check(number_between(0.1, 1e4));
-  lens(
+  const auto shutter = [&](CLI::Option* option) {
+    state_->of_scene.insert(option);
+    return option;
+  };
+  shutter(
       app.add_option("--shutter", common.lens.shutter_deg,
                      "motion blur: time that the shutter is open, degrees of the frame, such as 180 for half of it; 0: "
                      "none [as the scene says]"))
       ->type_name("DEG")
       ->check(number_between(0, 36000));
-  lens(app.add_option("--shutter-open", common.lens.shutter_open,
-                      "where the frame's time lies in it: centre: in the middle, begin: where the shutter opens [as "
-                      "the scene says, or centre]"))
+  shutter(app.add_option("--shutter-open", common.lens.shutter_open,
+                         "where the frame's time lies in it: centre: in the middle, begin: where the shutter opens [as "
+                         "the scene says, or centre]"))
       ->type_name("WHEN")
       ->check(CLI::IsMember({"centre", "begin"}));
 }

@@ -4,6 +4,7 @@
 
 #include "formats/error.h"
 #include "lib/scene/camera_extras.h"
+#include "lib/scene/centre_shutter.h"
 #include "lib/scene/content_camera.h"
 #include "lib/scene/gltf_load.h"
 #include "lib/scene/light_units.h"
@@ -32,6 +33,10 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
     camera_node_ = scene_.camera_node(common.camera);
     set_lens();
   }
+  // Stored light belongs to the camera's time, so tools that look through no camera read its shutter, too.
+  CameraExtras without;
+  const int camera = camera_node_ < 0 && scene_.has_camera() ? scene_.camera_node(common.camera) : camera_node_;
+  set_shutter(camera < 0 ? without : scene_.nodes[std::size_t(camera)].camera_extras);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
   if (const std::string doubt = doubt_of_light_units(scene_);
       needs & light && common.light_units == "raw" && !doubt.empty())
@@ -80,9 +85,6 @@ void SceneInput::set_lens() {
     extras.set(&Camera::f_stop, lens.f_stop.value_or(0));
     extras.set(&Camera::lens_radius_m, lens.radius_m.value_or(0));
   }
-  if (lens.shutter_deg) extras.set(&Camera::shutter_frames, *lens.shutter_deg / 360);
-  if (!lens.shutter_open.empty())
-    set_shutter_position(extras, lens.shutter_open == "begin" ? Camera::Shutter::start : Camera::Shutter::centre);
   if (lens.sensor_width_mm) {
     extras.set(&Camera::sensor_width_mm, *lens.sensor_width_mm);
     extras.set(&Camera::lens_mm, 0);
@@ -102,6 +104,15 @@ void SceneInput::set_lens() {
     throw InputError("--focus " + lens.focus + ": neither a distance in metres nor the name of a node of " +
                      scene_.path);
   extras.focus_node = int(named - scene_.nodes.begin());
+}
+
+/// The same for the shutter.
+void SceneInput::set_shutter(CameraExtras& extras) {
+  const LensOptions& lens = tool_.common().lens;
+  if (lens.shutter_deg) extras.set(&Camera::shutter_frames, *lens.shutter_deg / 360);
+  if (!lens.shutter_open.empty())
+    set_shutter_position(extras, lens.shutter_open == "begin" ? Camera::Shutter::start : Camera::Shutter::centre);
+  centre_shutter(scene_, extras, tool_.common().fps);
 }
 
 /// Throws InputError if the camera's lens is open, but it is not known what is sharp.

@@ -46,6 +46,7 @@ class SceneInput {
  private:
   void add_environment();
   void set_lens();
+  void set_shutter(CameraExtras& extras);
   void check_lens(const SceneFrame& frame) const;
   void enter_segment(int frame, bool read_volumes);
 

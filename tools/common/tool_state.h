@@ -22,7 +22,7 @@ struct Tool::State {
   Stats stats;
   std::set<const CLI::Option*> left_out_of_history;
   std::set<const CLI::Option*> of_scene;  ///< options with which every tool must read the scene
-  std::set<const CLI::Option*> of_lens;   ///< options with which every tool must see through the camera
+  std::set<const CLI::Option*> of_lens;   ///< options with which every tool must see through the lens
   std::set<const CLI::Option*> files;  ///< of file_option(): values may be patterns, unlike names of scenes and cameras
 
   std::vector<std::string> dependencies;

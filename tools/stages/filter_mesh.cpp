@@ -65,7 +65,7 @@ int filter_mesh(int argc, char** argv) {
           "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that %g photons count in the mean",
           kPhotonsInKernel));
   tool.output_option(options.output, ".meshirrad file, or a pattern; - for standard output")->required();
-  tool.common_options(uses_scene | uses_frames);
+  tool.common_options(uses_scene | uses_camera | uses_frames);
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
     tool.check_patterns({options.output});

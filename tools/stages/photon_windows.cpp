@@ -198,7 +198,7 @@ int photon_windows(int argc, char** argv) {
   tool.number_option("--filter-width", options.count.mesh.filter.width, 0, kNoLimit,
                      "deviation of the narrowest Gaussian by which elements are smoothed, m; 0: half of --cell");
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
-  tool.common_options(uses_scene | uses_frames);
+  tool.common_options(uses_scene | uses_camera | uses_frames);
   return tool.run([&] {
     std::vector<int> frames = tool.common().frames;
     std::ranges::sort(frames);  // each frame is read once

@@ -64,7 +64,7 @@ FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
 }
 
 /// The moments of the camera's shutter; nullptr if nothing is blurred. Stored light belongs to the frame's time, so it
-/// can be read only where this is the middle of the shutter.
+/// can be read only where this is the middle of the shutter (centre_shutter.h).
 std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& options, const ShutterInput& input) {
   const Camera& camera = input.view.camera().camera;
   if (!(camera.shutter_frames > 0)) return nullptr;
@@ -73,8 +73,9 @@ std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& opt
   if (!shutter) return nullptr;
   if (!options.traces_paths() && camera.shutter != Camera::Shutter::centre)
     throw InputError(
-        "--shutter: photons, points and records belong to the frame's time, which must lie in the middle of the "
-        "shutter: give --shutter-open centre, or --shutter 0 for a sharp picture (make: SHUTTER_OPEN, SHUTTER)");
+        "--shutter: photons, points and records belong to the middle of the shutter, which lies elsewhere in each "
+        "frame because shutter_frames changes: give --shutter-open centre, or --shutter DEG for all frames (make: "
+        "SHUTTER_OPEN, SHUTTER)");
   tool.stats().count("shutter_moments", double(shutter->moment_count()));
   tool.stats().set("shutter_motion_px", shutter->motion_px());
   return shutter;
@@ -82,7 +83,8 @@ std::unique_ptr<const Shutter> open_shutter(Tool& tool, const RenderOptions& opt
 
 /// Decides which pixels keep those of the other moment. All others become the mask of `options`.
 StillPixels keep_pixels(Tool& tool, const LitFrame& now, const StillMoment& before, FrameOptions& options) {
-  StillPixels still = still_pixels(now.sampler(options.seed), before.moment().sampler(options.seed), before.image(), options);
+  StillPixels still =
+      still_pixels(now.sampler(options.seed), before.moment().sampler(options.seed), before.image(), options);
   options.mask = still.anew;
   tool.stats().set("sampled_anew", still.share_anew());
   tool.stats().set("still.work", still.work);

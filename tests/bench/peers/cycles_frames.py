@@ -2,7 +2,8 @@
 
     {"scene": FILE, "size": "320x180", "light_units": "spec", "world": FILE or null, "sky": [R, G, B] or null, "camera": NAME or null,
      "smoke": {"file": FILE.vdb, "sigma_t": 10, "albedo": [R, G, B]} or null}    once, first
-    {"frame": 10, "samples": 16, "seed": 1, "denoise": true, "defaults": false, "output": FILE.exr}
+    {"frame": 10, "samples": 16, "seed": 1, "denoise": true, "defaults": false, "output": FILE.exr, "shutter": 0.5 or null,
+     "lens": {"f_stop": 2.8, "focus_m": 3} or null}     as our --shutter 180 --f-stop 2.8 --focus 3
     {"export": FILE.npz, "frame": 10}           the scene as triangles, for other renderers
 
 Answers each by a line: {"cpu_s": ...} of the job. The importer is Blender's own; all its NLA tracks are unmuted, lamps get no size, the world is
@@ -68,6 +69,20 @@ def load(job):
     scene.cycles.device = "CPU"
 
 
+def blur(scene, job):
+    """Shutter and lens of a job. Our f-stop means a sensor of 36 mm along the picture's longer side."""
+    scene.render.use_motion_blur = bool(job.get("shutter"))
+    if job.get("shutter"):
+        scene.render.motion_blur_shutter, scene.render.motion_blur_position = job["shutter"], "CENTER"
+    camera = scene.camera.data
+    camera.dof.use_dof = bool(job.get("lens"))
+    if job.get("lens"):
+        corner = camera.view_frame(scene=scene)[0]
+        half = max(abs(corner.x), abs(corner.y)) / abs(corner.z)
+        camera.dof.focus_distance = job["lens"]["focus_m"]
+        camera.dof.aperture_fstop = camera.lens / (18 / half) * job["lens"]["f_stop"]
+
+
 def render(job):
     scene = bpy.context.scene
     cycles = scene.cycles
@@ -82,6 +97,7 @@ def render(job):
             setattr(cycles, f"{name}_bounces", 1024)
         cycles.transparent_max_bounces = 1024
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
+    blur(scene, job)
     scene.render.filepath = job["output"]
     scene.frame_set(job["frame"])
     bpy.ops.render.render(write_still=True)
