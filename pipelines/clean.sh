@@ -11,7 +11,7 @@ ours="$ours|.*[.](csv|md|html|svg|png|gp)"
 for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p' plan.json); do   # of all stages
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
-  rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.*
+  rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.* "$folder"/.*.claim
   rmdir "$folder" 2> /dev/null
 done
 rm -rf state/slurm-* state/.slurm-*

@@ -150,6 +150,10 @@ else
       for left in "$OUT"/state/.*."${ours%.*}".*; do
         process=${left##*."${ours%.*}".}
         [ -d "/proc/${process%%.*}" ] || rm -rf "$left"
+      done
+      for left in "$OUT"/state/.*.claim; do
+        { read -r of process _ < "$left"; } 2> /dev/null && [ "$of" = "$(uname -n)" ] && [ ! -d "/proc/$process" ] &&
+          rm -f "$left"
       done)
     cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
   fi

@@ -14,6 +14,7 @@
 # plan.
 set -e
 . "${0%/*}/made.sh"
+. "${0%/*}/claim.sh"
 command=$1; shift
 
 frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.exr -> 0012
@@ -80,7 +81,7 @@ interval() {
   wanted=$target
   try=$target.try.$$
   mkdir -p "$try"
-  trap 'rm -rf "$try"' EXIT
+  trap 'rm -rf "$try"; let_go' EXIT
   decide "$a" "$b" "$middle" "$threshold" "$try" > "$try/line"
   line=$(cat "$try/line")
   echo "$line" >&2
@@ -103,7 +104,7 @@ frame() {
     if [ "$(number "$frame")" -lt "$(number "$x")" ]; then interval=$left; else interval=$right; fi
   done
   part=${target%.exr}.part.$$
-  trap 'rm -f "$part".*' EXIT
+  trap 'rm -f "$part".*; let_go' EXIT
   n=$(number "$frame")
   # A completed frame that is still to be filtered has a key in its name: it is used again if it is there.
   completed=$target
@@ -136,12 +137,16 @@ log() {
 marks() {
   keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" }
     /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
-    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
+    while read -r name; do ! grep -q "^$name:" "$PLAN" || echo "$name"; done | paste -sd,)
   [ -z "$keys" ] || echo "--mark $keys"
 }
 
 case $command in
-  interval | frame) $command "$@"; finished "$1";;
+  interval | frame)
+    trap let_go EXIT
+    hold "$1" -- || exit 0
+    $command "$@"
+    finished "$1";;
   log | marks) $command "$@";;
   *) echo "walkthrough.sh: '$command' is none of interval, frame, log, marks" >&2; exit 2;;
 esac

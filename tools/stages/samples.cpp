@@ -112,7 +112,7 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
       d.together = 1;
     }
     planned.graph = planner.graph(planned.plan, less);
-    out.write(planned, planner.tool_hash(), "");
+    out.write(planned, planner.tool_hash(), "", "");
     fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
     for (const GraphFile& file : planned.graph.files) {
       std::vector<std::string> names{file.name};
