@@ -52,7 +52,7 @@ def ended(chain, makes, what):
     for make in makes:
         said = make.communicate(timeout=60)[0]
         if make.returncode:
-            chain.wrong(f"{what}: exit {make.returncode}: {said[-2500:]}")
+            chain.wrong(f"{what}: exit {make.returncode}: {said[-800:]}")
 
 
 def at_once(chain, count):
