@@ -19,6 +19,6 @@ rmdir state 2> /dev/null
 rm -rf report/files   # what `make report` measures
 rmdir report 2> /dev/null
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null
-rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html
+rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html timeline.json
 rmdir frames "$OUT" 2> /dev/null
 exit 0

@@ -165,6 +165,10 @@ case $goal in frames/*)
   [ -n "$dry" ] || grep -q "^${goal%.*}[.]exr:" "$OUT/plan.mk" ||
     { echo "$goal: is none of FRAMES=$FRAMES" >&2; exit 2; };;
 esac
+if [ "$goal" = timeline ] && [ -z "$dry" ]; then
+  (cd "$OUT" && sh "$PIPELINES/timeline.sh" timeline.json) && echo "look at $OUT/timeline.json, for instance with ui.perfetto.dev"
+  exit
+fi
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 

@@ -37,7 +37,8 @@ def processes_in(folder):
 def tool_at(shot, stage):
     """The process of the tool that makes a file of this stage, stopped; or None."""
     for number, words in processes_in(shot.out):
-        if words[0].startswith(str(shot.tools)) and any(word.startswith(stage + "/") for word in words[words.index("-o"):] if "-o" in words):
+        made = words[words.index("--stats") + 1] if "--stats" in words else ""   # beside the output
+        if words[0].startswith(str(shot.tools)) and made.startswith(stage + "/"):
             try:
                 os.kill(number, signal.SIGSTOP)
                 return number

@@ -4,7 +4,7 @@
 Run at the top of the tree; BIN is the folder with the tools. cluster.sh starts Slurm with two nodes on the loopback address; skipped
 (77) where it is not installed.
 
-  equal    a moving box and a walkthrough, by RUN='srun ...' with GROUP=frame and by `make slurm`: digests as on one machine
+  equal    a moving box and a walkthrough, by RUN='srun ...' with GROUP=frame, the same in an allocation of salloc, and by `make slurm`: digests as on one machine
   faults   the table of faults.py, in an OUT that holds other pictures: in each stage a node goes down or the tool is killed; at a random
            moment daemons, make or a job are killed, cancelled, requeued, the disk is full, memory is short, clocks differ, two makes run at
            once. Then: each shown frame is the old one or the right one; the same command, typed once more at most, ends with 0 and gives the
@@ -32,7 +32,7 @@ from faults import clocks_apart, hungry_tools, jobs, no_memory, processes_in, sl
 for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 SMALL = {"SIZE": "64x36", "QUALITY": "draft", "INDIRECT": "records", "PHOTONS": "4k", "POINTS": "--point-count 1k --light-samples 1", "WAIT": "2"}
-SRUN = "srun -Q -n1 -c{threads} --mem={mem} --time={time}"
+SRUNS = {"srun": "srun -Q -n1 -c{threads} --mem={mem} --time={time}", "salloc": "srun -Q -N1 -n1 --exact -c{threads} --mem={mem}"}
 
 
 class Shot:
@@ -58,7 +58,8 @@ class Shot:
     def stages(self):
         """Folders of stages, in the order of the plan."""
         lines = (self.alone / "plan.mk").read_text().splitlines()
-        return list(dict.fromkeys(line.split("/")[0] for line in lines if ": words :=" in line or line.startswith("walk/")))
+        folders = dict.fromkeys(line.split("/")[0] for line in lines if ": words :=" in line)
+        return [folder for folder in folders if any((self.alone / folder).glob("*[.]*"))]   # not those of the report
 
     def strange(self):
         """Frames that are neither those of the run before nor the right ones."""
@@ -66,8 +67,8 @@ class Shot:
         return [n for n, digest in enumerate(shown) if digest not in (self.old[n], self.right[n])] if len(shown) == len(self.right) - 2 else shown
 
     def command(self, out, way=None, **more):
-        more = ({"RUN": SRUN, "GROUP": "frame", "THREADS": "1"} if way == "srun" else {}) | more
-        return ["make", "-j6", "--no-print-directory", "-f", "Makefile.example", "slurm" if way == "slurm" else "demo", f"OUT={out}",
+        more = ({"RUN": SRUNS[way], "GROUP": "frame", "THREADS": "1"} if way in SRUNS else {}) | more
+        return [*(["salloc", "-Q", "-n2", "--mem-per-cpu=1500M"] if way == "salloc" else []), "make", "-j6", "--no-print-directory", "-f", "Makefile.example", "slurm" if way == "slurm" else "demo", f"OUT={out}",
                 *(f"{n}={v}" for n, v in (self.values | more).items())]
 
     def make(self, out, way=None, **more):
@@ -86,6 +87,7 @@ class Shot:
         """What is not as it must be after a run that ended with 0."""
         left = [p.name for p in self.out.rglob("*") if re.search(r"[.]tmp[.]|[.]part[.]|[.]try[.]|^slurm-|[.]claim$", p.name)]
         left += [" ".join(words) for _, words in processes_in(self.out)]
+        wait_for(lambda: not slurm("squeue", "-h").strip(), 90)   # a controller that was killed may take ended jobs for running ones
         queue = slurm("squeue", "-h").strip()
         return (["other digests"] if self.digests(self.out) != self.right else []) + ([f"left are {left[:3]}"] if left else []) + \
             ([f"in the queue: {queue}"] if queue else [])
@@ -209,7 +211,7 @@ def main():
             walk = Shot(folder, arguments.bin, "walk", SCENE=str(scene), FRAMES="0-6", METHOD="walkthrough", KEY_DISTANCE="3", FILTER="1")
             hungry_tools(box.hungry, arguments.bin)
             for shot in (box, walk) if not arguments.only else ():
-                for way in ("srun", "slurm"):
+                for way in ("srun", "salloc", "slurm"):
                     began = time.monotonic()
                     shutil.rmtree(shot.out, ignore_errors=True)
                     code, text = shot.make(shot.out, way)

@@ -67,13 +67,16 @@ struct Cost {
   double memory = 0;  ///< largest of its processes, bytes
 };
 
-/// `files`: names of the files in `folder` that each command of the stage has written. Empty if one has no statistics.
+/// `files`: names of the files in `folder` that each command of the stage writes. Some may not have been needed, as keys
+/// in the middle of an interval that was not halved. Empty if none has statistics.
 std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
                             const std::vector<std::vector<std::string>>& files) {
   Cost sum;
+  double count = 0;
   for (const std::vector<std::string>& names : files) {
     const std::string stats = folder + "/" + beside(names.front(), ".json");
-    if (!fs::exists(stats)) return std::nullopt;
+    if (!fs::exists(stats)) continue;
+    ++count;
     const Json json = read_json(stats);
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
@@ -84,7 +87,6 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
     for (const std::string& name : names)
       if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
-  const double count = double(files.size());
   return count == 0
              ? std::nullopt
              : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count, sum.memory});
