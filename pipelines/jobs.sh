@@ -145,7 +145,11 @@ list() {
 # A job starts as soon as a place is free and what it reads is there, in the order of the list, as in a queue. It takes
 # its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
 forecast() {
-  MEASURED_ONLY=yes list | awk -F '\t' -v nodes="$NODES" -v cores="$CORES" -v threads="${THREADS:-1}" '
+  all=$(MEASURED_ONLY=yes list)
+  for nodes in $(echo "$NODES" | tr , ' '); do echo "$all" | forecast_on "$nodes"; done
+}
+forecast_on() {
+  awk -F '\t' -v nodes="$1" -v cores="$CORES" -v threads="${THREADS:-1}" '
     {
       name[++jobs] = $1; number[$1] = jobs; before[jobs] = $4
       memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3

@@ -63,7 +63,7 @@ def compared(bench, scene, frames, size, **more):
         cpu, files, disk, memory = spent(bench, out, SCENE=scene, FRAMES=frames, SIZE=size, **more)
     finally:
         shutil.rmtree(out)
-    pairs = ((said["cpu_s"], cpu), (said["bytes"] / 1e6, files / 1e6), (said["bytes"] / 1e6, disk / 1e6), (said["memory"] / 1e6, memory / 1e6))
+    pairs = ((said["cpu_s"], cpu), (said["bytes"] / 1e6, files / 1e6), (said["disk"] / 1e6, disk / 1e6), (said["memory"] / 1e6, memory / 1e6))
     return [scene.stem, frames, size, *(f"{a:.1f} {b:.1f} {a / b:.2f}" for a, b in pairs)], [a / b for a, b in pairs]
 
 

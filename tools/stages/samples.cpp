@@ -67,8 +67,8 @@ struct Cost {
   double memory = 0;  ///< largest of its processes, bytes
 };
 
-/// `files`: names of the files in `folder` that each command of the stage writes. Some may not have been needed, as keys
-/// in the middle of an interval that was not halved. Empty if none has statistics.
+/// `files`: names of the files in `folder` that each command of the stage writes. Some may not have been needed, as
+/// keys in the middle of an interval that was not halved. Empty if none has statistics.
 std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
                             const std::vector<std::vector<std::string>>& files) {
   Cost sum;
@@ -126,6 +126,13 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
   const double rays = has_word(wish.records, "--rays") ? 1 : kFewerRays;
   for (const auto& [stage, runs] : runs_by_stage(whole, 1 / (large * large), rays))
     json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
+  for (const auto& [frame, picture] : whole.graph.pictures)
+    if (const GraphFile* file = whole.graph.find(picture)) {
+      Json& shown = json["shown"][std::string(file->stage->name)];
+      shown = shown.is_null() ? 1 : shown.get<int>() + 1;
+    }
+  for (const GraphFile& file : whole.graph.files)
+    if (file.passing) json["passing"][std::string(file.stage->name)] = true;
   std::ofstream(folder + "/samples.json") << json;
 }
 
@@ -148,7 +155,8 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
       return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1);
     };
     estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s),
-                         runs[2] * whole(a->bytes, b->bytes)});
+                         runs[2] * whole(a->bytes, b->bytes), json.at("shown").value(name, 0.0),
+                         json.value("passing", Json::object()).contains(name)});
     costs["stages"][std::string(stage.folder)] = {estimates.back().cpu_s,
                                                   std::max(b->memory, whole(a->memory, b->memory))};
   }
