@@ -165,7 +165,7 @@ log() {
 marks() {
   keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" }
     /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
-    while read -r name; do ! grep -q "^$name:" "$PLAN" || echo "$name"; done | paste -sd,)
+    while read -r name; do ! grep -q "^$name:" "${PLAN:-plan.mk}" || echo "$name"; done | paste -sd,)
   [ -z "$keys" ] || echo "--mark $keys"
 }
 

@@ -23,7 +23,8 @@ def scenes(shared):
     return {"S2": RECORDS | {"SCENE": "pipelines/scenes/S2_cornell_moving.glb"},
             "S5": RECORDS | {"SCENE": str(made / "S5_moving_light.glb"), "MOVING": "time"},
             "S4": RECORDS | {"SCENE": "pipelines/scenes/S4_atrium.glb", "METHOD": "walkthrough"},
-            "S6": FEW | {"SCENE": str(made / "S6_smoke.glb"), "VOLUME": str(made / "S6_smoke_vdb" / "smoke_####.vdb"), "UPDATE": "20%"}}
+            "S6": FEW | {"SCENE": str(made / "S6_smoke.glb"), "VOLUME": str(made / "S6_smoke_vdb" / "smoke_####.vdb"), "UPDATE": "20%",
+                   "VOLUME_OPTIONS": "--volume-frames 0-23"}}
 
 
 class Whole(slurm.Shot):
