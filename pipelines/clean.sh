@@ -11,7 +11,7 @@ ours="$ours|.*[.](csv|md|html|svg|png|gp)"
 for folder in state shown report $(sed -n 's/^   "folder": "\([a-z_]*\)",$/\1/p' plan.json); do   # of all stages
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
-  rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.*
+  rm -rf "$folder/.lock" "$folder/.makes" "$folder/.planning" "$folder"/.*.tmp.* "$folder"/.*.claim
   rmdir "$folder" 2> /dev/null
 done
 rm -rf state/slurm-* state/.slurm-*
@@ -19,6 +19,6 @@ rmdir state 2> /dev/null
 rm -rf report/files   # what `make report` measures
 rmdir report 2> /dev/null
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null
-rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html
+rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html timeline.json
 rmdir frames "$OUT" 2> /dev/null
 exit 0

@@ -145,7 +145,11 @@ list() {
 # A job starts as soon as a place is free and what it reads is there, in the order of the list, as in a queue. It takes
 # its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
 forecast() {
-  MEASURED_ONLY=yes list | awk -F '\t' -v nodes="$NODES" -v cores="$CORES" -v threads="${THREADS:-1}" '
+  all=$(MEASURED_ONLY=yes list)
+  for nodes in $(echo "$NODES" | tr , ' '); do echo "$all" | forecast_on "$nodes"; done
+}
+forecast_on() {
+  awk -F '\t' -v nodes="$1" -v cores="$CORES" -v threads="${THREADS:-1}" '
     {
       name[++jobs] = $1; number[$1] = jobs; before[jobs] = $4
       memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3
@@ -159,17 +163,18 @@ forecast() {
       places = nodes * int(cores / threads)
       while (1) {
         for (j = 1; j <= jobs && running < places; ++j)
-          if (!(j in ends) && waits[j] == 0) { ends[j] = now + takes[j]; runs[j]; ++running }
+          if (!(j in ends) && waits[j] == 0) { ends[j] = now + takes[j]; at[++running] = j }
         if (!running) break
-        next_end = -1
-        for (j in runs) if (next_end < 0 || ends[j] < next_end) next_end = ends[j]
-        now = next_end
-        for (j in runs) if (ends[j] <= now) ended[j]
-        for (j in ended) {
-          delete runs[j]; delete ended[j]; --running
+        now = ends[at[1]]
+        for (k = 2; k <= running; ++k) if (ends[at[k]] < now) now = ends[at[k]]
+        going_on = 0
+        for (k = 1; k <= running; ++k) {
+          j = at[k]
+          if (ends[j] > now) { at[++going_on] = j; continue }
           n = split(after[j], list, " ")
           for (i = 1; i <= n; ++i) --waits[list[i]]
         }
+        running = going_on
       }
       chain = ""; end = 0
       for (j = 1; j <= jobs; ++j) if (longest(j) > path[end]) end = j

@@ -183,4 +183,11 @@ finished() {
   [ -z "$RUN" ] || [ -n "$V" ] || [ -z "$PROGRESS" ] || sh "$PIPELINES/progress.sh" say "$1"
 }
 
-case ${0##*/} in made.sh) made "$@" && finished "$1";; esac
+case ${0##*/} in
+  made.sh)
+    . "${0%/*}/claim.sh"
+    trap let_go EXIT
+    hold "$@" || exit 0
+    case $1 in raw/*) ! sh "${0%/*}/follow.sh" was_read "$1" || exit 0;; esac   # by another make
+    made "$@" && finished "$1";;
+esac

@@ -152,7 +152,7 @@ account() {
 end() {
   asked=$ERROR
   [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
-  frames=$(sed -n 's/^frames := //p' plan.mk)
+  frames=$(sed -n 's/^frames := //p' "$PLAN")
   account || return
   [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' "$PLAN"
     then audit='not audited, too few of the tested paths bring light'

@@ -23,7 +23,10 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
-for name in NODES CORES THREADS; do
+case $NODES, in *[!0-9,]* | *,0* | 0* | *,,*) [ -z "$NODES" ] ||
+  { echo "NODES=$NODES: give whole numbers above 0, divided by commas" >&2; exit 2; };;
+esac
+for name in CORES THREADS; do
   eval "value=\$$name"
   case $value in *[!0-9]* | 0*) echo "$name=$value: give a whole number above 0" >&2; exit 2;; esac
 done
@@ -97,7 +100,7 @@ estimate() {   # makes the first picture at two small sizes; prints options of s
   wanted=estimate
   made "$aside/small.mk" "$aside/large.mk" -- $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
   wanted=
-  for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
+  for plan in small.mk large.mk; do PROGRESS='' ending makes demo passing= -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside" || exit
   # A plan in OUT says from now on what its commands cost.
   [ ! -f "$OUT/state/inputs" ] || { cp "$aside/costs.json" "$OUT/state" && rm "$OUT/state/inputs"; }
@@ -150,6 +153,10 @@ else
       for left in "$OUT"/state/.*."${ours%.*}".*; do
         process=${left##*."${ours%.*}".}
         [ -d "/proc/${process%%.*}" ] || rm -rf "$left"
+      done
+      for left in "$OUT"/state/.*.claim; do
+        { read -r of process _ < "$left"; } 2> /dev/null && [ "$of" = "$(uname -n)" ] && [ ! -d "/proc/$process" ] &&
+          rm -f "$left"
       done)
     cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
   fi
@@ -161,6 +168,10 @@ case $goal in frames/*)
   [ -n "$dry" ] || grep -q "^${goal%.*}[.]exr:" "$OUT/plan.mk" ||
     { echo "$goal: is none of FRAMES=$FRAMES" >&2; exit 2; };;
 esac
+if [ "$goal" = timeline ] && [ -z "$dry" ]; then
+  (cd "$OUT" && sh "$PIPELINES/timeline.sh" timeline.json) && echo "look at $OUT/timeline.json, for instance with ui.perfetto.dev"
+  exit
+fi
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 

@@ -129,6 +129,8 @@ watch() {
   told='' sheet=$(sed -n 's|^sheet.png: . \([^ ]*\) .*|\1|p' "$PLAN")
   while :; do
     tasks_alive > "$work/alive" || exit 3
+    # Slurm holds a job that a node could not start until somebody releases it: it is submitted again instead.
+    sed -n 's/ PD launch.failed.requeued.held$//p' "$work/alive" | xargs -r scancel 2> /dev/null
     look "$sheet" > "$work/seen"
     why=
     while read -r what words; do

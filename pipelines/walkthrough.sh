@@ -14,6 +14,7 @@
 # plan.
 set -e
 . "${0%/*}/made.sh"
+. "${0%/*}/claim.sh"
 command=$1; shift
 
 frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.exr -> 0012
@@ -36,13 +37,14 @@ sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$n
 # Warps both keys to frame $1 in folder $2. Exits with 1 if a viewer sees the error of either warped picture in more
 # than the share $threshold of the pixels that are not masked. Appends the share in percent to $seen.
 differ() {
-  makes "$2/w_1.exr" "$2/w_2.exr" "$2/why.exr" "$2/flow.exr" "$2/$1.warp.json" -- ibr-warp "$a" "$b" --scene "$SCENE" \
-    --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
-    --stats "$2/$1.warp.json" || exit
-  [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
+  makes "$2/w_1.exr" "$2/w_2.exr" "$2/why.exr" "$2/flow.exr" "$2/$1.warp.stats.json" -- ibr-warp "$a" "$b" \
+    --scene "$SCENE" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
+    --stats "$2/$1.warp.stats.json" || exit
+  [ "$(count_of traced "$2/$1.warp.stats.json")" -lt "$(count_of pixels "$2/$1.warp.stats.json")" ] || return 0
   answer=0 may_differ=yes
   made "$2/compare.json" -- $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" \
-    --except "$2/why.exr" --fail-above "$threshold" --quiet --json "$2/compare.json" || answer=$?
+    --except "$2/why.exr" --fail-above "$threshold" --quiet --json "$2/compare.json" \
+    --stats "$2/$1.compare.stats.json" || answer=$?
   may_differ=
   [ $answer -le 1 ] || exit $answer
   seen="$seen $(count_of percent "$2/compare.json")"
@@ -59,7 +61,7 @@ decide() {
     [ "$f" -gt "$before" ] || continue   # short intervals have fewer frames
     before=$f
     differ "$f" "$try" || verdict=split
-    set -- "$@" "$try/$f.warp.json"
+    set -- "$@" "$try/$f.warp.stats.json"
   done
   pixels=$(sum_of pixels "$@") traced=$(sum_of traced "$@")
   for cause in specular occlusion slow deforming changed_light border edge undersampled; do
@@ -75,13 +77,40 @@ decide() {
   echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  seen ${seen:-none}${seen:+%}  traced $traced  $verdict"
 }
 
+# Statistics of an interval: sums over its commands, "phases" by name (formats/stats/stats.md).
+sum_of_stats() {
+  awk '
+    function value() { sub(/^[^:]*: */, ""); sub(/,$/, ""); return $0 }
+    /^  "host":/ { host = value() }
+    /^  "threads":/ { threads = value() }
+    /^  "cpu_s":/ { cpu += value() }
+    /^  "wall_s":/ { wall += value() }
+    /^  "peak_memory_bytes":/ { memory = value(); if (memory + 0 > most + 0) most = memory }
+    /^      "name":/ { name = value(); if (!(name in spent)) order[++names] = name }
+    /^      "cpu_s":/ { spent[name] += value() }
+    /^      "wall_s":/ { passed[name] += value() }
+    /^      "parallel":/ { parallel[name] = value() }
+    END {
+      print "{\n  \"schema\": \"tempolux.stats\",\n  \"version\": \"1.1\",\n  \"tool\": \"ibr-warp\","
+      printf "  \"host\": %s,\n  \"threads\": %d,\n", host, threads
+      printf "  \"cpu_s\": %.6f,\n  \"wall_s\": %.6f,\n  \"peak_memory_bytes\": %s,\n  \"phases\": [", cpu, wall, most
+      for (i = 1; i <= names; ++i) {
+        name = order[i]
+        printf "%s\n    {\n      \"name\": %s,\n      \"cpu_s\": %.6f,\n      \"wall_s\": %.6f,\n" \
+          "      \"parallel\": %s\n    }", (i > 1 ? "," : ""), name, spent[name], passed[name], parallel[name]
+      }
+      print "\n  ],\n  \"counts\": {},\n  \"results\": {}\n}"
+    }' "$@"
+}
+
 interval() {
   target=$1 a=$2 b=$3 middle=$4 middle_key=$5 threshold=$6 left=$7 right=$8
   wanted=$target
   try=$target.try.$$
   mkdir -p "$try"
-  trap 'rm -rf "$try"' EXIT
+  trap 'rm -rf "$try"; let_go' EXIT
   decide "$a" "$b" "$middle" "$threshold" "$try" > "$try/line"
+  sum_of_stats "$try"/*.stats.json > "$try/stats" && mv "$try/stats" "${target%.done}.json"
   line=$(cat "$try/line")
   echo "$line" >&2
   case $line in
@@ -103,7 +132,7 @@ frame() {
     if [ "$(number "$frame")" -lt "$(number "$x")" ]; then interval=$left; else interval=$right; fi
   done
   part=${target%.exr}.part.$$
-  trap 'rm -f "$part".*' EXIT
+  trap 'rm -f "$part".*; let_go' EXIT
   n=$(number "$frame")
   # A completed frame that is still to be filtered has a key in its name: it is used again if it is there.
   completed=$target
@@ -136,12 +165,16 @@ log() {
 marks() {
   keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" }
     /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
-    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
+    while read -r name; do ! grep -q "^$name:" "${PLAN:-plan.mk}" || echo "$name"; done | paste -sd,)
   [ -z "$keys" ] || echo "--mark $keys"
 }
 
 case $command in
-  interval | frame) $command "$@"; finished "$1";;
+  interval | frame)
+    trap let_go EXIT
+    hold "$1" -- || exit 0
+    $command "$@"
+    finished "$1";;
   log | marks) $command "$@";;
   *) echo "walkthrough.sh: '$command' is none of interval, frame, log, marks" >&2; exit 2;;
 esac

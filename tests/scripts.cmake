@@ -70,6 +70,10 @@ add_test(NAME pipelines.interrupted_methods COMMAND python3 -B tests/pipelines/i
 add_test(NAME pipelines.jobs COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan> --only jobs
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.interrupted pipelines.interrupted_methods pipelines.jobs PROPERTIES TIMEOUT 600)
+# A queue of one command a frame: makes that share light.
+add_test(NAME farm.one_frame COMMAND python3 -B tests/farm/one_frame.py $<TARGET_FILE_DIR:scene-plan> --only frames,window,walkthrough
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(farm.one_frame PROPERTIES TIMEOUT 600)
 # A real Slurm on the loopback address; skipped where it is not installed.
 add_test(NAME farm.slurm COMMAND python3 -B tests/farm/slurm.py $<TARGET_FILE_DIR:scene-plan> --faults 4 WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(farm.slurm PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)

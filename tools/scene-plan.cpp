@@ -127,11 +127,15 @@ int main(int argc, char** argv) {
           ->type_name("FOLDER"));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
-  std::string arguments = std::filesystem::current_path().string();
-  for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
+  std::string arguments = std::filesystem::current_path().string(), shot = arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word(argv[i]), before(argv[i - 1]);
+    arguments.append(word).push_back('\0');
+    if (before != "--frames" && !word.starts_with("--frames=")) shot.append(word).push_back('\0');
+  }
   return tool.run([&] {
     if (options.scene.empty() && options.estimate.empty()) throw InputError("scene is required; see scene-plan --help");
-    if (!options.scene.empty()) tools::plan_range(tool, options, hash_hex(arguments));
+    if (!options.scene.empty()) tools::plan_range(tool, options, hash_hex(arguments), hash_hex(shot));
     else std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     return int(tools::exit_ok);
   });

@@ -42,17 +42,20 @@ double power_law(double x1, double y1, double x2, double y2, double x) {
 
 std::string estimate_text(const std::vector<StageEstimate>& stages, int processors) {
   std::string text = "stage                                 runs  CPU s each   CPU s all   file each       files\n";
-  double cpu_s = 0, bytes = 0;
+  double cpu_s = 0, bytes = 0, frames = 0, passing = 0;
   for (const StageEstimate& stage : stages) {
     cpu_s += stage.runs * stage.cpu_s;
-    bytes += stage.runs * stage.bytes;
+    if (stage.passing) passing = std::max(passing, stage.bytes);
+    else bytes += stage.runs * stage.bytes;
+    frames += stage.shown * stage.bytes;
     text += formatted("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s,
                       stage.runs * stage.cpu_s, size_text(stage.bytes).c_str(),
-                      size_text(stage.runs * stage.bytes).c_str());
+                      stage.passing ? "removed" : size_text(stage.runs * stage.bytes).c_str());
   }
   return text + formatted("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " +
          time_text(cpu_s / processors) + " on " + std::to_string(processors) +
-         (processors == 1 ? " processor\n" : " processors\n");
+         (processors == 1 ? " processor\n" : " processors\n") + "disk: at most " +
+         size_text(bytes + frames + 2 * processors * passing) + " with frames and what is removed later\n";
 }
 
 }  // namespace tempolux

@@ -13,9 +13,11 @@ namespace tempolux {
 /// One stage of the pipeline, over the whole run.
 struct StageEstimate {
   std::string stage;
-  double runs = 0;   ///< processes
-  double cpu_s = 0;  ///< of each
-  double bytes = 0;  ///< of each file that it writes
+  double runs = 0;       ///< processes
+  double cpu_s = 0;      ///< of each
+  double bytes = 0;      ///< of each file that it writes
+  double shown = 0;      ///< number of files that are copied to frames/
+  bool passing = false;  ///< files are removed when they have been read
 };
 
 /// The cost of one command of a stage.
@@ -32,7 +34,8 @@ StageCosts table_costs(int width, int height);
 double power_law(double x1, double y1, double x2, double y2, double x);
 
 /// A table for people: a line for each stage and one for the sum, with CPU seconds and bytes, and the wall time on
-/// `processors` busy processors.
+/// `processors` busy processors. The most bytes on the disk are those of the files, of the frames, which are copies,
+/// and of two passing files for each processor: one is written, the other one waits.
 std::string estimate_text(const std::vector<StageEstimate>& stages, int processors);
 
 }  // namespace tempolux

@@ -80,6 +80,15 @@ std::string Inputs::hash_of(const std::string& path) {
   return used_.insert_or_assign(path, *now).first->second.hash;
 }
 
+std::string Inputs::contents() const {
+  Hasher hasher;
+  for (const auto& [path, stamp] : used_) {
+    hasher.add(path);
+    hasher.add(stamp.hash);
+  }
+  return hasher.hex();
+}
+
 std::string Inputs::text(const std::string& wish) const {
   std::ostringstream text;
   text << kFirstLine << '\n' << wish << '\n';

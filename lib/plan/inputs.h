@@ -30,6 +30,8 @@ class Inputs {
   bool unchanged(const std::string& wish);
   /// Hash of a file's content, or of the names in a folder; "" if it does not exist.
   std::string hash_of(const std::string& path);
+  /// Hash of the names and contents of all inputs that this run has used.
+  std::string contents() const;
   /// The stamps of all inputs that this run has used, as the text of a file that the constructor reads.
   std::string text(const std::string& wish) const;
 

@@ -36,10 +36,15 @@ def run_make(project, tools, out, goal="demo", **variables):
 
 
 def estimate(project, tools, **variables):
-    """What `make estimate` says: CPU seconds and bytes."""
-    done = subprocess.run(command(project, tools, "none", "estimate", **variables), capture_output=True, text=True, env=environment(), check=True)
+    """What `make estimate` says: CPU seconds, bytes of all files, most bytes on the disk, bytes of memory of the largest
+    command."""
+    done = subprocess.run(command(project, tools, "none", "estimate", NODES="1", CORES="1", **variables), capture_output=True, text=True,
+                          env=environment(), check=True)
     cpu, size, unit = re.search(r"^all +(\S+) +(\S+) (\S+)$", done.stdout, re.M).groups()
-    return {"cpu_s": float(cpu), "bytes": float(size) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[unit]}
+    most, of = re.search(r"^disk: at most (\S+) (\S+)", done.stdout, re.M).groups()
+    memory = re.search(r"^memory of a job: up to (\d+) MB", done.stdout, re.M)[1]
+    units = {"kB": 1e3, "MB": 1e6, "GB": 1e9}
+    return {"cpu_s": float(cpu), "bytes": float(size) * units[unit], "disk": float(most) * units[of], "memory": float(memory) * 1e6}
 
 
 # ---- the tools alone

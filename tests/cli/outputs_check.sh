@@ -81,7 +81,7 @@ import json
 s = json.load(open("t3.json"))
 assert list(s) == ["schema", "version", "tool", "tool_version", "command", "exit_code", "threads", "cpu_s", "wall_s",
                    "peak_memory_bytes", "phases", "counts", "results"], list(s)
-assert (s["schema"], s["version"], s["tool"], s["threads"], s["exit_code"]) == ("tempolux.stats", "1.0", "tool-probe", 3, 0)
+assert (s["schema"], s["version"], s["tool"], s["threads"], s["exit_code"]) == ("tempolux.stats", "1.1", "tool-probe", 3, 0)
 assert s["command"].endswith("tool-probe s.glb"), s["command"]
 assert s["counts"] == {"bytes": 1048576} and s["results"] == {"flush_to_zero": 1}
 phase, = s["phases"]

@@ -40,6 +40,7 @@ AccountingStorageType=accounting_storage/none
 ReturnToService=2
 SlurmdTimeout=10
 KillWait=2
+InactiveLimit=20
 SchedulerParameters=sched_interval=1,batch_sched_delay=0,sched_min_interval=10000
 NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 2))] CPUs=1 RealMemory=2000
 PartitionName=all Nodes=n[1-2] Default=YES MaxTime=1:00:00 State=UP
@@ -59,6 +60,7 @@ END
 stop() {
   . "$folder/env" 2> /dev/null
   scancel -u root 2> /dev/null
+  for round in $(seq 50); do [ -n "$(squeue -h 2> /dev/null)" ] || break; sleep .2; done   # the processes of jobs end
   for pid in "$folder"/*.pid; do [ ! -f "$pid" ] || kill "$(cat "$pid")" 2> /dev/null; done
   for round in $(seq 50); do
     left=

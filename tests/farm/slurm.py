@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""The same frames from a real Slurm, whatever is lost: slurm.py BIN [--faults 12] [--seed 1]
+"""The same frames from a real Slurm, whatever is lost: slurm.py BIN [--faults 4] [--seed 1]
 
 Run at the top of the tree; BIN is the folder with the tools. cluster.sh starts Slurm with two nodes on the loopback address; skipped
 (77) where it is not installed.
 
-  equal    a moving box and a walkthrough, by RUN='srun ...' with GROUP=frame and by `make slurm`: digests as on one machine
-  faults   at a random moment, by turns under `make slurm` and under srun: a node goes down, a job is cancelled, requeued, a tool is killed,
-           slurmd is killed, slurmctld is killed, the make is killed by SIGKILL, is stopped by Ctrl-C; two makes at once. Then: the same
-           command, typed once more at most, ends with 0 and gives the same digests; nothing is in the queue and nothing is left behind
+  equal    a moving box and a walkthrough, by RUN='srun ...' with GROUP=frame, the same in an allocation of salloc, and by `make slurm`: digests as on one machine
+  faults   the table of faults.py, in an OUT that holds other pictures: in each stage a node goes down or the tool is killed; at a random
+           moment daemons, make or a job are killed, cancelled, requeued, the disk is full, memory is short, clocks differ, two makes run at
+           once. Then: each shown frame is the old one or the right one; the same command, typed once more at most, ends with 0 and gives the
+           same digests; nothing is in the queue, no process and no file is left behind
 
 Seen to fail: jobs without the environment's ENVIRONMENT (sbatch sets it to BATCH); a walkthrough's interval without its keys.
 """
@@ -25,36 +26,57 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+from faults import clocks_apart, hungry_tools, jobs, no_memory, processes_in, slurm, stopped, table, tool_at, wait_for    # noqa: E402
+
 for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 SMALL = {"SIZE": "64x36", "QUALITY": "draft", "INDIRECT": "records", "PHOTONS": "4k", "POINTS": "--point-count 1k --light-samples 1", "WAIT": "2"}
-SRUN = "srun -Q -n1 -c{threads} --mem={mem} --time={time}"
-
-
-def slurm(*words):
-    return subprocess.run(words, capture_output=True, text=True).stdout
+SRUNS = {"srun": "srun -Q -n1 -c{threads} --mem={mem} --time={time}", "salloc": "srun -Q -N1 -n1 --exact -c{threads} --mem={mem}"}
 
 
 class Shot:
     def __init__(self, folder, tools, name, **variables):
-        self.tools, self.name, self.out = tools, name, folder / name
+        self.tools, self.name, self.out = tools, name, folder / "disk" / name
+        self.alone, self.other, self.hungry = folder / f"{name}-alone", folder / f"{name}-other", folder / "hungry"
         self.values = SMALL | {"BIN": str(tools)} | variables
-        code, text = self.make(folder / f"{name}-alone")
-        if code:
-            sys.exit(f"FAILED: {name}: {text[-800:]}")
-        self.right = self.digests(folder / f"{name}-alone")
+        for out, more in (self.alone, {}), (self.other, {"PHOTONS": "3k"}):
+            code, text = self.make(out, **more)
+            if code:
+                sys.exit(f"FAILED: {name}: {text[-800:]}")
+        self.right, self.old = self.digests(self.alone), self.digests(self.other)
 
-    def command(self, out, way=None):
-        more = {"RUN": SRUN, "GROUP": "frame", "THREADS": "1"} if way == "srun" else {}
-        return ["make", "-j6", "--no-print-directory", "-f", "Makefile.example", "slurm" if way == "slurm" else "demo", f"OUT={out}",
+    def old_pictures(self):
+        """OUT holds the frames of other photons."""
+        shutil.rmtree(self.out, ignore_errors=True)
+        shutil.copytree(self.other, self.out)
+
+    def filtered(self):
+        """Pictures of this plan."""
+        return [p for p in (self.alone / "filtered").glob("*.exr") if (self.out / "filtered" / p.name).exists()]
+
+    def stages(self):
+        """Folders of stages, in the order of the plan."""
+        lines = (self.alone / "plan.mk").read_text().splitlines()
+        folders = dict.fromkeys(line.split("/")[0] for line in lines if ": words :=" in line)
+        return [folder for folder in folders if any((self.alone / folder).glob("*[.]*"))]   # not those of the report
+
+    def strange(self):
+        """Frames that are neither those of the run before nor the right ones."""
+        shown = self.digests(self.out)[:-2]
+        return [n for n, digest in enumerate(shown) if digest not in (self.old[n], self.right[n])] if len(shown) == len(self.right) - 2 else shown
+
+    def command(self, out, way=None, **more):
+        more = ({"RUN": SRUNS[way], "GROUP": "frame", "THREADS": "1"} if way in SRUNS else {}) | more
+        return [*(["salloc", "-Q", "-n2", "--mem-per-cpu=1500M"] if way == "salloc" else []), "make", "-j6", "--no-print-directory", "-f", "Makefile.example", "slurm" if way == "slurm" else "demo", f"OUT={out}",
                 *(f"{n}={v}" for n, v in (self.values | more).items())]
 
-    def make(self, out, way=None):
-        done = subprocess.run(self.command(out, way), capture_output=True, text=True, timeout=300)
+    def make(self, out, way=None, **more):
+        done = subprocess.run(self.command(out, way, **more), capture_output=True, text=True, timeout=300)
         return done.returncode, done.stdout + done.stderr
 
-    def start(self, way):
-        return subprocess.Popen(self.command(self.out, way), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    def start(self, way, **more):
+        return subprocess.Popen(self.command(self.out, way, **more), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
     def digests(self, out):
         frames = sorted((out / "frames").glob("*.exr"))
@@ -63,7 +85,9 @@ class Shot:
 
     def wrong(self):
         """What is not as it must be after a run that ended with 0."""
-        left = [p.name for p in self.out.rglob("*") if re.search(r"[.]tmp[.]|[.]part[.]|[.]try[.]|^slurm-", p.name)]
+        left = [p.name for p in self.out.rglob("*") if re.search(r"[.]tmp[.]|[.]part[.]|[.]try[.]|^slurm-|[.]claim$", p.name)]
+        left += [" ".join(words) for _, words in processes_in(self.out)]
+        wait_for(lambda: not slurm("squeue", "-h").strip(), 90)   # a controller that was killed may take ended jobs for running ones
         queue = slurm("squeue", "-h").strip()
         return (["other digests"] if self.digests(self.out) != self.right else []) + ([f"left are {left[:3]}"] if left else []) + \
             ([f"in the queue: {queue}"] if queue else [])
@@ -86,6 +110,13 @@ class Cluster:
     def pid(self, name):
         return int((self.folder / f"{name}.pid").read_text())
 
+    def log(self):
+        return "".join(file.read_text(errors="replace") for file in self.folder.glob("*.log"))
+
+    def forget_log(self):
+        for file in self.folder.glob("slurm*.log"):
+            os.truncate(file, 0)
+
     def mend(self):
         """All daemons run, and both nodes take jobs."""
         for name, command in (("slurmctld", ["slurmctld"]), ("slurmd.n1", ["slurmd", "-N", "n1"]), ("slurmd.n2", ["slurmd", "-N", "n2"])):
@@ -102,85 +133,30 @@ class Cluster:
             time.sleep(.2)
 
 
-def jobs(state="R"):
-    return slurm("squeue", "-h", "-r", "-t", state, "-o", "%i").split()
-
-
-def wait_for(found, seconds=60):
-    end = time.monotonic() + seconds
-    while not found() and time.monotonic() < end:
-        time.sleep(.1)
-    return found()
-
-
-def node_down(cluster, shot, make, rng):
-    slurm("scontrol", "update", "nodename=n1", "state=down", "reason=test")
-    time.sleep(1)
-    slurm("scontrol", "update", "nodename=n1", "state=resume")
-
-
-def drained(cluster, shot, make, rng):
-    slurm("scontrol", "update", "nodename=n2", "state=drain", "reason=test")
-
-
-def cancelled(cluster, shot, make, rng):
-    slurm("scancel", rng.choice(jobs() or jobs("PD") or ["0"]))
-
-
-def requeued(cluster, shot, make, rng):
-    slurm("scontrol", "requeue", rng.choice(jobs() or ["0"]))
-
-
-def tool_killed(cluster, shot, make, rng):
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            words = (process / "cmdline").read_bytes().split(b"\0")
-            if words[0].startswith(os.fsencode(shot.tools)) and os.fsencode(shot.out) == os.fsencode(os.readlink(process / "cwd")):
-                os.kill(int(process.name), signal.SIGKILL)
-                return
-        except OSError:
-            pass
-
-
-def slurmd_killed(cluster, shot, make, rng):
-    os.kill(cluster.pid("slurmd.n1"), signal.SIGKILL)
-    time.sleep(1)
-    cluster.mend()
-
-
-def slurmctld_killed(cluster, shot, make, rng):
-    os.kill(cluster.pid("slurmctld"), signal.SIGKILL)
-    time.sleep(1)
-    cluster.mend()
-
-
-def make_killed(cluster, shot, make, rng):
-    os.killpg(make.pid, signal.SIGKILL)
-
-
-def stopped(cluster, shot, make, rng):
-    os.killpg(make.pid, signal.SIGINT)
-
-
-def two_at_once(cluster, shot, make, rng):
-    other = shot.start("slurm")
-    said = other.communicate(timeout=300)[0]
-    if other.returncode:
-        raise RuntimeError(f"the second make: {said[-400:]}")
-
-
-FAULTS = [node_down, make_killed, tool_killed, stopped, cancelled, slurmd_killed, two_at_once, requeued, slurmctld_killed, drained]
-
-
-def fault(cluster, shot, inject, way, rng):
+def fault(cluster, shot, inject, way, stage, rng):
     """Returns what is wrong."""
-    shutil.rmtree(shot.out, ignore_errors=True)
-    make = shot.start(way)
-    at = rng.randint(0, 4)   # so many files of pictures
-    wait_for(lambda: jobs() and len(list(shot.out.glob("filtered/*.exr"))) >= at or make.poll() is not None)
+    shot.old_pictures()
+    more = {}
+    if inject is no_memory:
+        shutil.rmtree(f"{shot.hungry}.once", ignore_errors=True)
+        more = {"BIN": str(shot.hungry)}
+        cluster.forget_log()
+    make, hit = shot.start(way, **more), None
+    at = rng.randint(0, 4)   # so many pictures are there
+
+    def moment():
+        nonlocal hit
+        hit = hit or (tool_at(shot, stage) if stage else None)
+        return make.poll() is not None or (hit if stage else jobs() and len(shot.filtered()) >= at)
+
+    wait_for(moment, pause=.01)
+    if stage and not hit:
+        make.communicate(timeout=200)
+        return ["missed"]
     try:
-        inject(cluster, shot, make, rng)
+        inject(cluster, shot, make, hit)
     except RuntimeError as error:
+        os.killpg(make.pid, signal.SIGTERM)
         return [str(error)]
     for second in range(200):
         try:
@@ -196,24 +172,26 @@ def fault(cluster, shot, inject, way, rng):
     if inject is stopped and not wait_for(lambda: not slurm("squeue", "-h").strip(), 20):
         return [f"Ctrl-C leaves in the queue: {slurm('squeue')}"]
     cluster.mend()
-    typed_again = make.returncode != 0
-    if typed_again:
+    if make.returncode != 0:
+        if strange := shot.strange():
+            return [f"neither old nor new: {strange}"]
         code, said = shot.make(shot.out, way)
         if code:
             return [f"typed again: exit {code}: {said[-600:]}"]
+    if inject is clocks_apart and "Nothing to be done" not in (said := shot.make(shot.out)[1]):
+        return [f"clocks: makes something again: {said[-300:]}"]
     return shot.wrong()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("bin", type=lambda p: Path(p).resolve())
-    parser.add_argument("--faults", type=int, default=12)
+    parser.add_argument("--faults", type=int, default=0, help="so many rows of the table of faults.py, spread over it; 0: all")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", default="", help="faults: " + ", ".join(f.__name__ for f in FAULTS))
+    parser.add_argument("--only", default="", help="names of faults, divided by commas")
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))   # the daemons end, too
     rng, failed = random.Random(arguments.seed), 0
-    faults = [f for f in FAULTS if not arguments.only or f.__name__ in arguments.only.split(",")]
 
     def told(what, wrong, began):
         nonlocal failed
@@ -223,26 +201,38 @@ def main():
     with tempfile.TemporaryDirectory(prefix="farm") as name:
         folder = Path(name)
         os.chmod(folder, 0o755)
+        (folder / "disk").mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200m", "farm", folder / "disk"]).returncode == 0
         cluster = Cluster(folder / "cluster")
         try:
             scene = folder / "pan.glb"
             subprocess.run([sys.executable, "-B", "pipelines/scenes/make_walkthrough.py", "pan", "pipelines/scenes/S1_cornell.glb", scene], check=True)
             box = Shot(folder, arguments.bin, "box", SCENE="pipelines/scenes/S2_cornell_moving.glb", FRAMES="0-5")
             walk = Shot(folder, arguments.bin, "walk", SCENE=str(scene), FRAMES="0-6", METHOD="walkthrough", KEY_DISTANCE="3", FILTER="1")
+            hungry_tools(box.hungry, arguments.bin)
             for shot in (box, walk) if not arguments.only else ():
-                for way in ("srun", "slurm"):
+                for way in ("srun", "salloc", "slurm"):
                     began = time.monotonic()
                     shutil.rmtree(shot.out, ignore_errors=True)
                     code, text = shot.make(shot.out, way)
                     told(f"{shot.name} by {way}", [f"exit {code}: {text[-600:]}"] if code else shot.wrong(), began)
-            for number in range(arguments.faults):
-                inject = faults[number % len(faults)]
-                way = "slurm" if inject in (two_at_once, requeued) or number // len(faults) % 2 == 0 else "srun"
-                began, shot = time.monotonic(), (box, walk)[number // len(faults) // 2 % 2]
-                told(f"{shot.name} by {way}, {inject.__name__}", fault(cluster, shot, inject, way, rng), began)
-                cluster.mend()
+            rows = [row for row in table({"box": box, "walk": walk}) if not arguments.only or row[0].__name__ in arguments.only.split(",")]
+            count = arguments.faults or len(rows)
+            for inject, way, shot, stage in [rows[n * len(rows) // count] for n in range(count)]:
+                title, began = f"{shot.name} by {way}, {inject.__name__} {stage}".strip(), time.monotonic()
+                if inject.__name__ == "full_disk" and not mounted:
+                    print(f"skipped: {title}: no disk can be mounted")
+                    continue
+                for _ in range(3):   # a short command may end before it is seen
+                    wrong = fault(cluster, shot, inject, way, stage, rng)
+                    cluster.mend()
+                    if wrong != ["missed"]:
+                        break
+                told(title, wrong, began)
         finally:
             cluster.stop()
+            if mounted:
+                subprocess.run(["umount", "-l", folder / "disk"])
     return 1 if failed else 0
 
 

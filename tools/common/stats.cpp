@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 #include <sys/time.h>
+#include <sys/utsname.h>
 
 #include <chrono>
 #include <cinttypes>
@@ -53,6 +54,11 @@ Json number(double value) {
 
 /// Rounds seconds to the microsecond.
 double rounded(double seconds) { return std::round(seconds * 1e6) / 1e6; }
+
+std::string host_name() {
+  utsname system{};
+  return ::uname(&system) == 0 ? system.nodename : "";
+}
 
 }  // namespace
 
@@ -106,10 +112,11 @@ std::string Stats::json(const std::string& tool, const std::string& command, int
                       {"wall_s", rounded(phase.wall_s)},
                       {"parallel", phase.parallel}});
   const Json document = {{"schema", "tempolux.stats"},
-                         {"version", "1.0"},
+                         {"version", "1.1"},
                          {"tool", tool},
                          {"tool_version", TEMPOLUX_VERSION},
                          {"command", command},
+                         {"host", host_name()},
                          {"exit_code", exit_code},
                          {"threads", threads},
                          {"cpu_s", rounded(cpu_seconds())},

@@ -63,7 +63,7 @@ Wish wish_of(Tool& tool, const PlanOptions& options) {
 
 }  // namespace
 
-void plan_range(Tool& tool, const PlanOptions& options, const std::string& arguments) {
+void plan_range(Tool& tool, const PlanOptions& options, const std::string& arguments, const std::string& shot) {
   const Wish wish = wish_of(tool, options);
   std::optional<PlanFolder> folder;
   if (options.estimate.empty()) folder.emplace(options.folder);
@@ -73,7 +73,7 @@ void plan_range(Tool& tool, const PlanOptions& options, const std::string& argum
   tool.stats().phase("write");
   if (!folder) return write_samples(options.estimate, planner, wish);
   if (!options.measured.empty()) folder->inputs().hash_of(options.measured);
-  folder->write(planner.planned(), planner.tool_hash(), arguments);
+  folder->write(planner.planned(), planner.tool_hash(), arguments, shot);
   for (const PlannedSegment& segment : planner.planned().plan.segments)
     for (const Reason& reason : segment.decisions.reasons)
       tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage +

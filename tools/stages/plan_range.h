@@ -17,8 +17,8 @@ struct PlanOptions {
 };
 
 /// Plans the frames of the run and writes the plan's folder, or the samples of an estimate. `arguments`: a hash of the
-/// command; a folder whose plan was made by the same command from unchanged inputs stays as it is. Throws InputError
-/// for options that contradict each other.
-void plan_range(Tool& tool, const PlanOptions& options, const std::string& arguments);
+/// command; a folder whose plan was made by the same command from unchanged inputs stays as it is. `shot`: a hash of
+/// the command without its frames. Throws InputError for options that contradict each other.
+void plan_range(Tool& tool, const PlanOptions& options, const std::string& arguments, const std::string& shot);
 
 }  // namespace tempolux::tools

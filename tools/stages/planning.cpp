@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Earlier plans whose files are kept, so that going back to an earlier wish makes nothing again.
+/// Earlier shots whose files are kept, so that going back to an earlier wish makes nothing again.
 constexpr int kPlansKept = 2;
 
 void make_folder(const std::string& folder) {
@@ -44,14 +44,12 @@ void write_if_changed(const std::string& path, const std::string& content) {
   if (!fs::exists(path) || content_of(path) != content) write_whole(path, content);
 }
 
-/// Names of a plan's files, one per line, without extension: files in `beside` share the name.
-std::string stems(const Graph& graph, const std::vector<std::string>& others) {
+/// Names of a plan's files without extension: files in `beside` share the name.
+std::set<std::string> stems(const Graph& graph, const std::vector<std::string>& others) {
   std::set<std::string> names(others.begin(), others.end());
   for (const GraphFile& file : graph.files) names.insert(stem_of(file.name));
   for (const PlanFile& state : graph.states) names.insert(stem_of(state.name));
-  std::string text;
-  for (const std::string& name : names) text += name + "\n";
-  return text;
+  return names;
 }
 
 /// True if a name looks like those of make_graph: "0012-3fa94c21d0".
@@ -137,22 +135,31 @@ StageCosts PlanFolder::costs(int width, int height) const {
   return costs;
 }
 
-void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish) {
+std::set<std::string> PlanFolder::keep(const std::string& shot, std::set<std::string> names) {
+  const auto list = [&](std::size_t age) { return path_ + "/state/files" + (age ? "." + std::to_string(age) : ""); };
+  const std::string title = "shot " + hash_hex(shot + inputs_.contents()) + "\n";
+  std::vector<std::string> others;
+  for (std::size_t age = 0; age <= kPlansKept; ++age) {
+    const std::string text = content_of(list(age));
+    if (text.starts_with(title)) add_lines(text.substr(title.size()), names);
+    else if (!text.empty()) others.push_back(text);
+  }
+  std::string text = title;
+  for (const std::string& name : names) text += name + "\n";
+  write_if_changed(list(0), text);
+  for (std::size_t age = 1; age <= kPlansKept && age <= others.size(); ++age) {
+    write_if_changed(list(age), others[age - 1]);
+    add_lines(others[age - 1], names);
+  }
+  return names;
+}
+
+void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish,
+                       const std::string& shot) {
   for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
   for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
   for (const PlanFile& state : planned.graph.states) write_if_changed(path_ + "/" + state.name, state.content);
-  const std::string list = path_ + "/state/files", names = stems(planned.graph, decided_);
-  std::set<std::string> named;
-  add_lines(names, named);
-  if (content_of(list) != names) {
-    for (int age = kPlansKept; age > 0; --age) {
-      const std::string from = age == 1 ? list : list + "." + std::to_string(age - 1);
-      if (fs::exists(from)) write_whole(list + "." + std::to_string(age), content_of(from));
-    }
-    write_whole(list, names);
-  }
-  for (int age = 1; age <= kPlansKept; ++age) add_lines(content_of(list + "." + std::to_string(age)), named);
-  remove_expired(path_, named);
+  remove_expired(path_, keep(shot, stems(planned.graph, decided_)));
   std::string warnings;
   for (const std::string& warning : planned.warnings) warnings += warning.substr(0, warning.find('\n')) + "\n";
   write_if_changed(path_ + "/state/warnings", warnings);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,14 @@ class PlanFolder {
   /// Costs of a command of each stage: as `make estimate` has measured them for pictures of this size, else those of
   /// the table of stages.
   StageCosts costs(int width, int height) const;
-  /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
-  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish);
+  /// Writes plan.json, plan.mk and state/. Removes files that no kept plan names (keep).
+  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& shot);
 
  private:
+  /// Adds names to the list of the files of this shot: of all plans that have had the same wish and inputs, for any
+  /// frames. Keeps this list and those of the two shots before. Returns all names in them.
+  std::set<std::string> keep(const std::string& shot, std::set<std::string> names);
+
   std::string path_;
   Inputs inputs_;
   std::vector<std::string> decided_;  ///< files that decisions() has read or written

@@ -67,13 +67,16 @@ struct Cost {
   double memory = 0;  ///< largest of its processes, bytes
 };
 
-/// `files`: names of the files in `folder` that each command of the stage has written. Empty if one has no statistics.
+/// `files`: names of the files in `folder` that each command of the stage writes. Some may not have been needed, as
+/// keys in the middle of an interval that was not halved. Empty if none has statistics.
 std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
                             const std::vector<std::vector<std::string>>& files) {
   Cost sum;
+  double count = 0;
   for (const std::vector<std::string>& names : files) {
     const std::string stats = folder + "/" + beside(names.front(), ".json");
-    if (!fs::exists(stats)) return std::nullopt;
+    if (!fs::exists(stats)) continue;
+    ++count;
     const Json json = read_json(stats);
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
@@ -84,7 +87,6 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
     for (const std::string& name : names)
       if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
-  const double count = double(files.size());
   return count == 0
              ? std::nullopt
              : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count, sum.memory});
@@ -112,7 +114,7 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
       d.together = 1;
     }
     planned.graph = planner.graph(planned.plan, less);
-    out.write(planned, planner.tool_hash(), "");
+    out.write(planned, planner.tool_hash(), "", "");
     fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
     for (const GraphFile& file : planned.graph.files) {
       std::vector<std::string> names{file.name};
@@ -124,6 +126,13 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
   const double rays = has_word(wish.records, "--rays") ? 1 : kFewerRays;
   for (const auto& [stage, runs] : runs_by_stage(whole, 1 / (large * large), rays))
     json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
+  for (const auto& [frame, picture] : whole.graph.pictures)
+    if (const GraphFile* file = whole.graph.find(picture)) {
+      Json& shown = json["shown"][std::string(file->stage->name)];
+      shown = shown.is_null() ? 1 : shown.get<int>() + 1;
+    }
+  for (const GraphFile& file : whole.graph.files)
+    if (file.passing) json["passing"][std::string(file.stage->name)] = true;
   std::ofstream(folder + "/samples.json") << json;
 }
 
@@ -146,7 +155,8 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
       return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1);
     };
     estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s),
-                         runs[2] * whole(a->bytes, b->bytes)});
+                         runs[2] * whole(a->bytes, b->bytes), json.at("shown").value(name, 0.0),
+                         json.value("passing", Json::object()).contains(name)});
     costs["stages"][std::string(stage.folder)] = {estimates.back().cpu_s,
                                                   std::max(b->memory, whole(a->memory, b->memory))};
   }

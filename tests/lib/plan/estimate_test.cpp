@@ -20,6 +20,10 @@ TEST(Estimate, TextHasAllStagesAndTheirSums) {
   EXPECT_NE(text.find("photon-trace"), std::string::npos);
   EXPECT_NE(text.find("10.6                 22.0 MB"), std::string::npos) << text;  // 2 x 1.1 + 4 x 2.1 s
   EXPECT_NE(text.find("about 6 s on 2 processors\n"), std::string::npos) << text;
+  // Two files and two frames of 1 MB; of the files that are removed two for each processor: 2 + 2 + 2 * 2 * 3 MB.
+  const std::string passing = estimate_text({{"raw", 2, 1, 3e6, 0, true}, {"filtered", 2, 1, 1e6, 2, false}}, 2);
+  EXPECT_NE(passing.find("disk: at most 16.0 MB"), std::string::npos) << passing;
+  EXPECT_NE(passing.find("4.0                  2.0 MB"), std::string::npos) << passing;
   EXPECT_NE(estimate_text({{"frame-render", 1000, 36, 0}}, 2).find("about 5.0 hours on 2"), std::string::npos);
 }
 
