@@ -4,6 +4,7 @@
 //
 // Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed, it only finds
 // that out and writes nothing. Format: formats/plan/plan.md.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -103,6 +104,9 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }
 
+/// Options that do not tell plans of a shot apart, with their values.
+const std::string kNotOfShot[] = {"--frames", "--threads", "--stats"};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -127,11 +131,15 @@ int main(int argc, char** argv) {
           ->type_name("FOLDER"));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
-  std::string arguments = std::filesystem::current_path().string(), shot = arguments;
+  // `shot`: the words without those that change neither files nor their names.
+  std::string arguments = std::filesystem::current_path().string(), shot;
   for (int i = 1; i < argc; ++i) {
     const std::string word(argv[i]), before(argv[i - 1]);
     arguments.append(word).push_back('\0');
-    if (before != "--frames" && !word.starts_with("--frames=")) shot.append(word).push_back('\0');
+    const bool left_out = std::ranges::any_of(kNotOfShot, [&](const std::string& option) {
+      return word == option || before == option || word.starts_with(option + "=");
+    });
+    if (!left_out) shot.append(word).push_back('\0');
   }
   return tool.run([&] {
     if (options.scene.empty() && options.estimate.empty()) throw InputError("scene is required; see scene-plan --help");

@@ -97,10 +97,10 @@ MovingPilot pilot_moving(const RenderScene& scene, const EmissionTable& emission
 
 namespace {
 
-/// MovingChoice::static_ray_factor: f^2 is compared with the squares of sqrt(2) and 2 sqrt(2).
+/// MovingChoice::static_ray_factor: f is compared with sqrt(2), squared.
 int static_ray_factor(double gathered, double static_records) {
   const double above = (1 - gathered) * (kLeastRecords + gathered), below = static_records * gathered;
-  return above >= 8 * below ? 4 : above >= 2 * below ? 2 : 1;
+  return above >= 2 * below ? 2 : 1;
 }
 
 }  // namespace

@@ -43,11 +43,12 @@ struct MovingChoice {
 /// never chosen: the records of a frame then depend on all states before it in the segment, so a single frame in the
 /// middle of a segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9).
 ///
-/// static_ray_factor is the power of two, 1, 2 or 4, that is nearest to the factor with the least product of the work
-/// of a picture's records and their squared error. Static records alone light the share 1 - g of what is seen (g =
-/// gathered_share) and cost s = static_records; records of a state light the rest and cost .1 + g. So the product
+/// static_ray_factor is 1 or 2, whichever is nearer to the factor with the least product of the work of a picture's
+/// records and their squared error. Static records alone light the share 1 - g of what is seen (g = gathered_share) and
+/// cost s = static_records; records of a state light the rest and cost .1 + g. So the product
 ///     (s f + .1 + g) ((1 - g) / f + g)
-/// is least at f = sqrt((1 - g) (.1 + g) / (s g)).
+/// is least at f = sqrt((1 - g) (.1 + g) / (s g)). With more than 2 the records for one frame that is made alone would
+/// cost more than twice as much as its own (as for Decisions::together).
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records);
 
 }  // namespace tempolux

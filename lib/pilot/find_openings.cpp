@@ -12,18 +12,20 @@ namespace {
 
 constexpr double kLeastOpeningGain = 1.25;  ///< in the variance; as kLeastGain of the shares of lights
 constexpr std::size_t kFewestStarts = 64;   ///< that choose the spheres; two for each sphere
-constexpr std::size_t kMostStarts = 2048;   ///< that choose, and that measure: bounds the time of the search
+constexpr std::size_t kMostStarts = 1024;   ///< that choose, and that measure: bounds the time of the search
 constexpr int kLevels = 6;                  ///< of lattices: the smallest cells have 1/64 of the scene's radius
 
-/// Indices of a cell of a lattice, the lattice's level first: its edge is 2^level m.
-using CellIndex = std::array<int, 4>;
+/// Indices of a cell of a lattice, the lattice's level first: its edge is 2^level m. Integers that may exceed an int.
+using CellIndex = std::array<double, 4>;
+
+double edge_of(const CellIndex& cell) { return std::ldexp(1.0, int(cell[0])); }
 
 Vec3d centre_of(const CellIndex& cell) {
-  const auto middle = [&](std::size_t axis) { return std::ldexp(cell[axis] + 0.5, cell[0]); };
+  const auto middle = [&](std::size_t axis) { return (cell[axis] + 0.5) * edge_of(cell); };
   return {middle(1), middle(2), middle(3)};
 }
 
-double radius_of(const CellIndex& cell) { return kRadiusOfCell * std::ldexp(1.0, cell[0]); }
+double radius_of(const CellIndex& cell) { return kRadiusOfCell * edge_of(cell); }
 
 bool passes(const DistantStart& start, Vec3d centre, double radius) {
   return length2(cross(centre - start.origin, start.travel)) < radius * radius;
@@ -47,11 +49,15 @@ std::map<CellIndex, std::vector<std::size_t>> cells_passed(std::span<const Dista
   for (int level = top; level > top - kLevels; --level) {
     const double step = std::ldexp(0.5, level);
     for (std::size_t i = 0; i < starts.size(); ++i) {
+      CellIndex last{INFINITY};
       const double middle = dot(centre - starts[i].origin, starts[i].travel);
       for (double along = middle - radius; along <= middle + radius; along += step) {
         const Vec3d at = starts[i].origin + starts[i].travel * along;
-        const auto index = [&](double x) { return int(std::floor(std::ldexp(x, -level))); };
-        std::vector<std::size_t>& passing = cells[{level, index(at.x), index(at.y), index(at.z)}];
+        const auto index = [&](double x) { return std::floor(std::ldexp(x, -level)); };
+        const CellIndex cell{double(level), index(at.x), index(at.y), index(at.z)};
+        if (cell == last) continue;
+        last = cell;
+        std::vector<std::size_t>& passing = cells[cell];
         if (passing.empty() || passing.back() != i) passing.push_back(i);
       }
     }
@@ -74,7 +80,7 @@ std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, Ve
       double sum = 0;
       for (const std::size_t i : passing)
         if (!held[i]) ++left, sum += weight2(starts[i]);
-      const double size = std::ldexp(1.0, cell[0]);
+      const double size = edge_of(cell);
       if (left > fewest && sum > best * size * size) best = sum / (size * size), chosen = &cell;
     }
     if (!chosen) break;

@@ -20,17 +20,24 @@ plan "$scenes/S2_cornell_moving.glb" -o lamps
 
 plan lit.glb --camera inside -o lit
 
-# Wide ground: spheres, also under a lamp. Small ground, or lamps alone in a room: no file.
+# Wide ground: spheres, also under a lamp. Small ground: openings alone. Lamps alone in a room: no file.
 for scene in wide outside lit; do eval "$scene=\$(ls $scene/state/0000-*.view)"; done
 [ "$(wc -l <"$lit")" -gt 8 ] || bad 'lit: few spheres'
 [ "$(head -1 "$wide")" = 'tempolux view 1.0' ] || bad 'wide: first line'
 [ "$(wc -l <"$wide")" -gt 8 ] || bad 'wide: few spheres'
 [ "$(wc -l <"$wide")" -le 33 ] || bad 'wide: many spheres'
 cmp -s "$wide" "$outside" && bad 'two cameras look to the same places'
-for scene in small lamps; do
-  ls $scene/state/*.view 2> /dev/null && bad "$scene: a view file where none helps"
-  grep -q '[.]view' $scene/plan.mk && bad "$scene: plan.mk names a view file"
+ls lamps/state/*.view 2> /dev/null && bad 'lamps: a view file where none helps'
+grep -q '[.]view' lamps/plan.mk && bad 'lamps: plan.mk names a view file'
+small=$(ls small/state/0000-*.view)
+[ "$(head -1 "$small")" = 'tempolux view 1.2' ] || bad 'small: first line'
+grep -q '^opening ' "$small" || bad 'small: no opening'
+grep -q '^[0-9-]' "$small" && bad 'small: spheres around what is seen'
+# The same photons for any number of threads.
+for threads in 1 3; do
+  photon-trace small.glb --frame 0 --photons 30k --kinds indirect -q --importance "$small" --threads $threads -o small$threads.photons
 done
+cmp small1.photons small3.photons || bad 'small: other bytes with other threads'
 grep -q -- "--importance ${wide#wide/}" wide/plan.mk || bad 'plan.mk does not name the view file'
 echo 'tempolux view 1.0' > empty.view
 # A plan made again leaves the file untouched.

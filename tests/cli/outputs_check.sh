@@ -79,7 +79,7 @@ for n in 1 2 3 7; do tool-probe s.glb -o t$n.out --threads $n --stats t$n.json; 
 "${PYTHON:-python3}" - <<'END' || bad 'statistics'
 import json
 s = json.load(open("t3.json"))
-assert list(s) == ["schema", "version", "tool", "tool_version", "command", "exit_code", "threads", "cpu_s", "wall_s",
+assert list(s) == ["schema", "version", "tool", "tool_version", "command", "host", "exit_code", "threads", "cpu_s", "wall_s",
                    "peak_memory_bytes", "phases", "counts", "results"], list(s)
 assert (s["schema"], s["version"], s["tool"], s["threads"], s["exit_code"]) == ("tempolux.stats", "1.1", "tool-probe", 3, 0)
 assert s["command"].endswith("tool-probe s.glb"), s["command"]

@@ -71,5 +71,15 @@ TEST(ChooseMoving, WhateverIsCheaper) {
   EXPECT_EQ(choose_moving({0.03, 0.2}, 1, 1).method, MovingMethod::anew);
 }
 
+/// f = sqrt(.8 x .3 / (s .2)): 5.4 for a 24th, 1.36 for s = .65. Only records that follow from static records have
+/// them.
+TEST(ChooseMoving, StaticRecordsThatManyShareGetMoreRays) {
+  EXPECT_EQ(choose_moving({0.03, 0.2}, 24, 1 / 24.0).static_ray_factor, 2);
+  EXPECT_EQ(choose_moving({0.03, 0.2}, 24, 0.65).method, MovingMethod::records);
+  EXPECT_EQ(choose_moving({0.03, 0.2}, 24, 0.65).static_ray_factor, 1);
+  EXPECT_EQ(choose_moving({0.03, 0}, 24, 1 / 24.0).static_ray_factor, 2);
+  EXPECT_EQ(choose_moving({0.07, 0.99}, 24, 1 / 24.0).static_ray_factor, 1);
+}
+
 }  // namespace
 }  // namespace tempolux
