@@ -1,10 +1,11 @@
 # claim.sh -- of all commands that are to make a file, in all makes on all machines that see OUT, one makes it while the
 # others wait. Other scripts read this file and ending.sh.
 #
-# The claim of a file is a file in state/ with a line HOST PROCESS BEAT. While the process lives, BEAT counts up every
-# five seconds. A claim is void if its process has ended, which its own host can see, or if its line stays the same for
-# half a minute: then the host is gone. So clocks of machines do not matter. Claims save work and nothing else: a file
-# that two commands make at once is right, too, because each gives its name to a whole file.
+# A process claims a file by a second file in state/, which holds one line: HOST PROCESS BEAT. While the process lives,
+# it adds 1 to BEAT every five seconds. A claim is void if its process has ended, which the same host can see, or if the
+# line stays the same for half a minute, since the host is then gone. So the clocks of machines need not agree. Claims
+# only save work: if two commands make a file at once, the file is right, too, because each writes a whole file under
+# another name and then renames it.
 held='' beating='' host=''
 
 take() { (set -C; : > "$held") 2> /dev/null; }

@@ -104,7 +104,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }
 
-/// Options that do not tell plans of a shot apart, with their values.
+/// Options that change neither the files of a shot nor their names. Each takes a value.
 const std::string kNotOfShot[] = {"--frames", "--threads", "--stats"};
 
 }  // namespace
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
           ->type_name("FOLDER"));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
-  // `shot`: the words without those that change neither files nor their names.
+  // `shot`: the words without kNotOfShot.
   std::string arguments = std::filesystem::current_path().string(), shot;
   for (int i = 1; i < argc; ++i) {
     const std::string word(argv[i]), before(argv[i - 1]);

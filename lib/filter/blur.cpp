@@ -53,7 +53,7 @@ struct Colour {
 struct Tile {
   Motion least, farthest;  ///< those of its pixels that reach least and farthest
   float reach = 0;         ///< of `farthest`
-  bool torn = false;       ///< neighbouring pixels move differently: a border of surfaces
+  bool torn = false;       ///< two neighbouring pixels move differently, so the border of a surface is in the tile
 };
 
 /// What the pixels of a tile try.
@@ -79,9 +79,9 @@ float gradient_noise(int x, int y) {
   return fraction(52.9829189f * fraction(0.06711056f * float(x) + 0.00583715f * float(y)));
 }
 
-/// A shift between two shifts in whole pixels. `share` belongs to the farther one, so that the mean square of both is
-/// that of the shift: then blur has the right width. (The share that keeps the mean would blur what moves by a part of
-/// a pixel by as much as a pixel.)
+/// A shift is replaced by two shifts of whole pixels, the next smaller one and the next larger one. The larger one gets
+/// the share with which the mean square of the two equals the square of the shift. So blur has the right width. (A
+/// share that kept the mean would blur a surface by a pixel if the surface moves by a part of a pixel.)
 struct Shift {
   int near, far;
   float part, whole;  ///< share = part / whole

@@ -23,9 +23,10 @@ struct AimSphere {
 /// Start points of parallel light. A photon starts with probability kUniform uniformly on a disc of the scene sphere's
 /// radius R in front of the scene. Else it chooses sphere k with probability w_k and starts uniformly on the disc of
 /// radius r_k that the sphere covers, seen along the light. The constructor adds larger spheres around all given ones,
-/// each twice as wide as the one before, up to the scene's; together they have the share kAround. Openings are further
-/// spheres, through which light reaches what is seen; they have half of the remaining share, or all of it if no sphere
-/// is given. Bounces are not aimed at openings.
+/// each twice as wide as the one before, up to the scene's; together they have the share kAround. Openings are spheres
+/// that light passes on its way to what is seen. If spheres and openings are given, the given spheres and the larger
+/// ones around them keep half of their shares, and the openings get the other half. If openings alone are given, the
+/// openings get the share 1 - kUniform. Bounces are not aimed at openings.
 /// The pdf [1/m^2] of a start point sums over all ways to choose the point:
 ///     p = kUniform / (pi R^2) + (1 - kUniform) sum_k w_k [disc k holds the point] / (pi r_k^2)
 /// A photon's flux is divided by p, so the expected light does not depend on the spheres or their weights. Flux is at

@@ -97,9 +97,9 @@ class Lights {
   /// nullptr: none.
   const std::shared_ptr<const SkyGuide>& guide() const { return guide_; }
 
-  /// True if a directional light shines or the environment is not black.
-  /// True if the slot is a directional light or the environment.
+  /// True if the slot holds a directional light or the environment.
   bool is_distant(std::size_t slot) const;
+  /// True if a directional light shines or the environment is not black.
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }
   /// True if any light inside the scene shines.
   bool has_placed() const { return !tree_.empty(); }

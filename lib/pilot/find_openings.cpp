@@ -1,10 +1,12 @@
 #include "lib/pilot/find_openings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
+#include "lib/core/arrays.h"
+#include "lib/core/grid.h"
+#include "lib/pilot/lattice_cell.h"
 #include "lib/pilot/seen_spheres.h"
 
 namespace tempolux {
@@ -14,18 +16,6 @@ constexpr double kLeastOpeningGain = 1.25;  ///< in the variance; as kLeastGain 
 constexpr std::size_t kFewestStarts = 64;   ///< that choose the spheres; two for each sphere
 constexpr std::size_t kMostStarts = 1024;   ///< that choose, and that measure: bounds the time of the search
 constexpr int kLevels = 6;                  ///< of lattices: the smallest cells have 1/64 of the scene's radius
-
-/// Indices of a cell of a lattice, the lattice's level first: its edge is 2^level m. Integers that may exceed an int.
-using CellIndex = std::array<double, 4>;
-
-double edge_of(const CellIndex& cell) { return std::ldexp(1.0, int(cell[0])); }
-
-Vec3d centre_of(const CellIndex& cell) {
-  const auto middle = [&](std::size_t axis) { return (cell[axis] + 0.5) * edge_of(cell); };
-  return {middle(1), middle(2), middle(3)};
-}
-
-double radius_of(const CellIndex& cell) { return kRadiusOfCell * edge_of(cell); }
 
 bool passes(const DistantStart& start, Vec3d centre, double radius) {
   return length2(cross(centre - start.origin, start.travel)) < radius * radius;
@@ -41,20 +31,19 @@ std::vector<DistantStart> some_of(std::span<const DistantStart> starts, std::siz
   return some;
 }
 
-/// For each cell the starts whose lines pass it inside the scene's sphere (`centre` in world space, `radius`, m).
-std::map<CellIndex, std::vector<std::size_t>> cells_passed(std::span<const DistantStart> starts, Vec3d centre,
-                                                           double radius) {
-  std::map<CellIndex, std::vector<std::size_t>> cells;
+/// Finds the cells that the lines of the starts pass inside the scene's sphere, and lists the starts of each cell.
+/// `centre`: of the sphere, world space, m. `radius`: m.
+std::map<LatticeCell, std::vector<std::size_t>> cells_passed(std::span<const DistantStart> starts, Vec3d centre,
+                                                             double radius) {
+  std::map<LatticeCell, std::vector<std::size_t>> cells;
   const int top = std::ilogb(radius) - 1;
   for (int level = top; level > top - kLevels; --level) {
     const double step = std::ldexp(0.5, level);
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      CellIndex last{INFINITY};
+      LatticeCell last{top + 1};
       const double middle = dot(centre - starts[i].origin, starts[i].travel);
       for (double along = middle - radius; along <= middle + radius; along += step) {
-        const Vec3d at = starts[i].origin + starts[i].travel * along;
-        const auto index = [&](double x) { return std::floor(std::ldexp(x, -level)); };
-        const CellIndex cell{double(level), index(at.x), index(at.y), index(at.z)};
+        const LatticeCell cell = LatticeCell::at(starts[i].origin + starts[i].travel * along, level);
         if (cell == last) continue;
         last = cell;
         std::vector<std::size_t>& passing = cells[cell];
@@ -74,17 +63,17 @@ std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, Ve
   double whole = 0;
   while (spheres.size() < formats::kMaxViewSpheres) {
     double best = 0;
-    const CellIndex* chosen = nullptr;
+    const LatticeCell* chosen = nullptr;
     for (const auto& [cell, passing] : cells) {
       std::size_t left = 0;
       double sum = 0;
       for (const std::size_t i : passing)
         if (!held[i]) ++left, sum += weight2(starts[i]);
-      const double size = edge_of(cell);
-      if (left > fewest && sum > best * size * size) best = sum / (size * size), chosen = &cell;
+      const double square = cell.edge() * cell.edge();
+      if (left > fewest && sum > best * square) best = sum / square, chosen = &cell;
     }
     if (!chosen) break;
-    formats::ViewSphere sphere{.centre = array_of(centre_of(*chosen)), .radius = radius_of(*chosen)};
+    formats::ViewSphere sphere = chosen->sphere();
     double sum = 0;
     for (std::size_t i = 0; i < starts.size(); ++i)
       if (!held[i] && passes(starts[i], vec_of(sphere.centre), sphere.radius))
@@ -93,8 +82,8 @@ std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, Ve
     whole += sphere.weight;
     spheres.push_back(sphere);
   }
-  for (formats::ViewSphere& sphere : spheres) sphere.weight = std::exp2(std::round(std::log2(sphere.weight / whole)));
-  std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
+  for (formats::ViewSphere& sphere : spheres) sphere.weight = nearest_on_grid(sphere.weight / whole, 1);
+  sort_by_place(spheres);
   return spheres;
 }
 

@@ -9,11 +9,11 @@
 
 namespace tempolux {
 
-/// The start of a light path from sun or sky, one of many that were drawn with the same density.
+/// The start of a light path from sun or sky.
 struct DistantStart {
   Vec3d origin{}, travel{};  ///< world space, m; unit direction of flight
   double value2 = 0;         ///< squared contribution of the path to what cameras see, in any unit
-  double density = 0;        ///< Aim::density() with which the start was drawn
+  double density = 0;        ///< Aim::density() of the aim that drew the start
 };
 
 /// Spheres that photons of sun and sky should pass (Aim's openings), such as parts of a window, and their weights.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "lib/core/grid.h"
 #include "lib/core/halton.h"
 #include "lib/core/parallel_each.h"
 #include "lib/photon/photon_trace.h"
@@ -254,7 +255,7 @@ std::vector<formats::ViewLight> SharePilot::shares() const {
   // pilot path's part of the photons are left out.
   for (const auto& [node, square] : squares_)
     if (const double share = std::sqrt(square) / sum; share > 1.0 / double(kPilotPaths))
-      shares.push_back({node, std::exp2(std::round(std::log2(share)))});
+      shares.push_back({node, nearest_on_grid(share, 1)});
   double given = 0, variance = 0, variance_before = 0;
   for (const formats::ViewLight& light : shares) given += light.share;
   for (const formats::ViewLight& light : shares) {

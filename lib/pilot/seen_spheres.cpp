@@ -7,10 +7,12 @@
 
 #include "lib/core/arrays.h"
 #include "lib/core/frame.h"
+#include "lib/core/grid.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/light/aim.h"
 #include "lib/render/known_light.h"
+#include "lib/pilot/lattice_cell.h"
 #include "lib/pilot/photon_shares.h"
 #include "lib/pilot/places_seen.h"
 
@@ -27,29 +29,23 @@ constexpr double kLeastGain = 1;  ///< log2 of the least gain in density: twice 
 
 /// A cell of the octree.
 struct Cell {
-  int level = 0;                  ///< edge 2^level m
-  std::array<double, 3> index{};  ///< integers: the lowest corner is at index 2^level
+  LatticeCell cube;
   std::vector<const WeighedPlace*> places;
   double weight = 0;
-
-  double size() const { return std::ldexp(1.0, level); }
 };
 
 /// The cells of this level that hold the places, ordered by index.
 std::vector<Cell> cells_of(const std::vector<const WeighedPlace*>& places, int level) {
-  std::map<std::array<double, 3>, Cell> cells;
+  std::map<LatticeCell, Cell> cells;
   for (const WeighedPlace* place : places) {
-    const Vec3d& p = place->position;
-    const std::array index{std::floor(std::ldexp(p.x, -level)), std::floor(std::ldexp(p.y, -level)),
-                           std::floor(std::ldexp(p.z, -level))};
-    Cell& cell = cells[index];
-    cell.level = level;
-    cell.index = index;
+    const LatticeCell cube = LatticeCell::at(place->position, level);
+    Cell& cell = cells[cube];
+    cell.cube = cube;
     cell.places.push_back(place);
     cell.weight += place->weight;
   }
   std::vector<Cell> list;
-  for (auto& [index, cell] : cells) list.push_back(std::move(cell));
+  for (auto& [cube, cell] : cells) list.push_back(std::move(cell));
   return list;
 }
 
@@ -88,8 +84,8 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
     Cell cell = std::move(*heaviest);
     cells.erase(heaviest);
     std::vector<Cell> parts;
-    if (cell.weight > kSplitShare * whole && cell.level > lowest) {
-      parts = cells_of(cell.places, cell.level - 1);
+    if (cell.weight > kSplitShare * whole && cell.cube.level > lowest) {
+      parts = cells_of(cell.places, cell.cube.level - 1);
       drop_light(parts);
     }
     if (parts.empty() || done.size() + cells.size() + parts.size() > formats::kMaxViewSpheres)
@@ -249,11 +245,8 @@ SeenSpheres seen_spheres(const std::vector<WeighedPlace>& places, double scene_r
   std::vector<formats::ViewSphere> spheres;
   double weights = 0;
   for (const Cell& cell : cells) {
-    formats::ViewSphere sphere;
-    for (int axis = 0; axis < 3; ++axis)
-      sphere.centre[std::size_t(axis)] = (cell.index[std::size_t(axis)] + 0.5) * cell.size();
-    sphere.radius = kRadiusOfCell * cell.size();
-    sphere.weight = std::exp2(std::round(std::log2(cell.weight / whole)));
+    formats::ViewSphere sphere = cell.cube.sphere();
+    sphere.weight = nearest_on_grid(cell.weight / whole, 1);
     weights += sphere.weight;
     spheres.push_back(sphere);
   }
@@ -264,7 +257,7 @@ SeenSpheres seen_spheres(const std::vector<WeighedPlace>& places, double scene_r
     held += cells[i].weight / whole;
   }
   gain += (1 - held) * std::log2(Aim::kUniform);
-  std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
+  sort_by_place(spheres);
   return {std::move(spheres), gain >= kLeastGain};
 }
 

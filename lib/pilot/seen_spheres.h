@@ -61,9 +61,6 @@ SeenSpheres seen_spheres(const std::vector<WeighedPlace>& places, double scene_r
 /// The spheres of seen_spheres() if they are worth aiming at, else none.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
 
-/// Radius of the sphere around a cube over the cube's edge: half of the diagonal is .866.
-inline constexpr double kRadiusOfCell = 0.875;
-
 /// True if no surface lies between two places in scene space.
 bool sees(const Tracer& tracer, Vec3d from, Vec3d to);
 

@@ -6,18 +6,6 @@
 #include "lib/core/sampling.h"
 
 namespace tempolux {
-namespace {
-
-/// Radius [m] of an open lens. half: half of the picture's longer side, at distance 1.
-double radius_of(const Camera& camera, double half) {
-  if (camera.lens_radius_m > 0) return camera.lens_radius_m;
-  const double sensor = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : kSensorWidth_mm;
-  const double focal_mm = camera.lens_mm > 0 ? camera.lens_mm : sensor / 2 / half;
-  return focal_mm / 1000 / (2 * camera.f_stop);
-}
-
-}  // namespace
-
 CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height)
     : camera_(camera),
       camera_from_scene_(inverse(camera.scene_from_camera)),
@@ -29,7 +17,7 @@ CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int 
   centre_x_ = 2 * half_height_ * camera.camera.lens_shift[0];
   centre_y_ = 2 * half_height_ * camera.camera.lens_shift[1];
   if (!camera.camera.has_lens()) return;
-  lens_radius_ = radius_of(camera.camera, std::max(half_width_, half_height_));
+  lens_radius_ = tempolux::lens_radius(camera.camera, std::max(half_width_, half_height_));
   per_focus_ = camera.camera.focus_m > 0 ? 1 / camera.camera.focus_m : 0;
 }
 

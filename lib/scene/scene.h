@@ -210,6 +210,14 @@ struct Camera {
 /// Width of a full-frame sensor, and Blender's default.
 inline constexpr double kSensorWidth_mm = 36;
 
+/// Radius [m] of a camera's open lens. half: half of the picture's longer side at distance 1.
+inline double lens_radius(const Camera& camera, double half) {
+  if (camera.lens_radius_m > 0) return camera.lens_radius_m;
+  const double sensor = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : kSensorWidth_mm;
+  const double focal_mm = camera.lens_mm > 0 ? camera.lens_mm : sensor / 2 / half;
+  return focal_mm / 1000 / (2 * camera.f_stop);
+}
+
 /// A camera's lens and shutter as the `extras` of its node say them (the exporter for Blender writes them).
 struct CameraExtras {
   int first_frame = 0;

@@ -201,7 +201,7 @@ struct Output::State {
     if (file < 0) fail(path, "cannot write", errno);
   }
   void open_temporary(std::optional<mode_t> mode) {
-    const std::filesystem::path stem = temporary_stem(target, temporary_host());
+    const std::filesystem::path stem = temporary_stem(target, host_name());
     temporary_path = stem.string() + std::to_string(getpid());
     enter_in_ledger();
     remove_stale(stem);
@@ -275,7 +275,7 @@ void protect_input(const std::string& path) {
   if (output != ledger().to_be_replaced.end()) ledger().refuse_input(*id, output->second);
 }
 
-std::string temporary_host() {
+std::string host_name() {
   char name[HOST_NAME_MAX + 1] = "host";
   gethostname(name, sizeof name - 1);
   std::string host = name;

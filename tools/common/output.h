@@ -58,8 +58,8 @@ class Output {
 /// Declares that this run reads `path`: no output may replace it under any name (InputError, whichever of the two comes
 /// first). Affects regular files only.
 void protect_input(const std::string& path);
-/// HOST in names of temporary files: identifies this machine.
-std::string temporary_host();
+/// The name of this machine, with '_' for '/': HOST in names of temporary files.
+std::string host_name();
 /// Final names of the outputs committed so far, in order, without "-".
 std::vector<std::string> committed_outputs();
 /// `message` with every temporary name of this run replaced by the final name.

@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 #include <sys/time.h>
-#include <sys/utsname.h>
 
 #include <chrono>
 #include <cinttypes>
@@ -14,6 +13,7 @@
 
 #include "lib/core/formatted.h"
 #include "lib/core/json.h"
+#include "tools/common/output.h"
 
 namespace tempolux::tools {
 namespace {
@@ -54,11 +54,6 @@ Json number(double value) {
 
 /// Rounds seconds to the microsecond.
 double rounded(double seconds) { return std::round(seconds * 1e6) / 1e6; }
-
-std::string host_name() {
-  utsname system{};
-  return ::uname(&system) == 0 ? system.nodename : "";
-}
 
 }  // namespace
 

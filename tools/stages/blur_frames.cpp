@@ -13,15 +13,17 @@
 #include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/filter_frames.h"
 
 namespace tempolux::tools {
 namespace {
 
 struct Options {
   std::string input, flow, output, open = "centre";
-  double shutter_deg = 0, f_stop = 0, lens_radius_m = 0, focus_m = 0, sensor_width_mm = kSensorWidth_mm;
+  double shutter_deg = 0;
+  Camera lens;
 
-  bool has_lens() const { return f_stop > 0 || lens_radius_m > 0; }
+  Options() { lens.sensor_width_mm = kSensorWidth_mm; }
 };
 
 /// Widths of the picture and of its longer side at distance 1 m, m, from the attributes of a perspective camera. The
@@ -51,12 +53,10 @@ BlurOptions blur_of(const Options& options, const Image& image, const std::strin
   const double frames = options.shutter_deg / 360;
   blur.opens = options.open == "begin" ? 0 : -frames / 2;
   blur.closes = blur.opens + frames;
-  if (!options.has_lens()) return blur;
+  if (!options.lens.has_lens()) return blur;
   const auto [width, longer] = widths_in(image, file);
-  const double radius_m = options.lens_radius_m > 0 ? options.lens_radius_m
-                                                    : options.sensor_width_mm / longer / 1000 / (2 * options.f_stop);
-  blur.lens_px = radius_m * image.width / width;
-  blur.focus_m = options.focus_m;
+  blur.lens_px = lens_radius(options.lens, longer / 2) * image.width / width;
+  blur.focus_m = options.lens.focus_m;
   return blur;
 }
 
@@ -81,13 +81,7 @@ void blur_file(Tool& tool, const Options& options, int number) {
   try {
     image = blur_frame(std::move(image), flow, blur);
   } catch (const InputError& error) { throw InputError(file + ": " + error.what()); }
-  image.text["tempolux:history"] += tool.history_line(number);
-  tool.stats().phase("write");
-  save_exr(output.temporary_path(), image);
-  output.commit();
-  tool.stats().end_phase();
-  tool.stats().count("frames", 1);
-  tool.stats().count("pixels", double(image.pixel_count()));
+  write_filtered(tool, output, image, number);
 }
 
 }  // namespace
@@ -105,12 +99,13 @@ int blur_frames(int argc, char** argv) {
                      "blur");
   tool.choice_option("--shutter-open", options.open, {"centre", "begin"},
                      "where the frame's time lies in it: in the middle, or where the shutter opens");
-  auto* const f_stop = tool.number_option("--f-stop", options.f_stop, 0, 1e6,
+  auto* const f_stop = tool.number_option("--f-stop", options.lens.f_stop, 0, 1e6,
                                           "focal length over the diameter of the lens' opening, such as 2.8; 0: "
                                           "everything is sharp");
-  tool.number_option("--lens-radius", options.lens_radius_m, 0, 1e3, "radius of the opening in place of --f-stop, m")
+  tool.number_option("--lens-radius", options.lens.lens_radius_m, 0, 1e3,
+                     "radius of the opening in place of --f-stop, m")
       ->excludes(f_stop);
-  app.add_option("--focus", options.focus_m, "what is sharp: a distance along the view axis, m, or inf")
+  app.add_option("--focus", options.lens.focus_m, "what is sharp: a distance along the view axis, m, or inf")
       ->type_name("M")
       ->check(CLI::Validator(
           [](std::string& text) {
@@ -120,7 +115,7 @@ int blur_frames(int argc, char** argv) {
                        : text + ": must be a distance of at least 1e-6 m, or inf";
           },
           "", ""));
-  tool.number_option("--sensor-width", options.sensor_width_mm, 0.1, 1e4,
+  tool.number_option("--sensor-width", options.lens.sensor_width_mm, 0.1, 1e4,
                      "sensor along the picture's longer side, mm, which with the angle of view gives the focal length");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
   tool.common_options(uses_frames);
@@ -128,9 +123,9 @@ int blur_frames(int argc, char** argv) {
     keep_memory_of_pictures();
     tool.check_patterns({options.input, options.flow, options.output});
     tool.check_frame_output(options.output);
-    if (!(options.shutter_deg > 0) && !options.has_lens())
+    if (!(options.shutter_deg > 0) && !options.lens.has_lens())
       throw InputError("--shutter, --f-stop: neither blurs anything; give --shutter 180, or --f-stop 2.8 --focus M");
-    if (options.has_lens() && !(options.focus_m > 0))
+    if (options.lens.has_lens() && !(options.lens.focus_m > 0))
       throw InputError("--f-stop: no distance is sharp: give --focus METRES");
     const std::vector<int>& frames = tool.common().frames;
     for (const int& frame : frames) {

@@ -51,14 +51,8 @@ class FilterRun {
       else image = filter_window(first, at, last, middle);
       if (!options_.channels.empty()) keep_channels(options_.channels, image);
     });
-    image.text["tempolux:history"] += tool_.history_line(number);
     say_noise(image);
-    tool_.stats().phase("write");
-    save_exr(output.temporary_path(), image);
-    output.commit();
-    tool_.stats().end_phase();
-    tool_.stats().count("frames", 1);
-    tool_.stats().count("pixels", double(image.pixel_count()));
+    write_filtered(tool_, output, image, number);
   }
 
  private:
@@ -207,6 +201,16 @@ void filter_range(Tool& tool, const FilterFramesOptions& options) {
 }
 
 }  // namespace
+
+void write_filtered(Tool& tool, Output& output, Image& image, std::optional<int> number) {
+  image.text["tempolux:history"] += tool.history_line(number);
+  tool.stats().phase("write");
+  save_exr(output.temporary_path(), image);
+  output.commit();
+  tool.stats().end_phase();
+  tool.stats().count("frames", 1);
+  tool.stats().count("pixels", double(image.pixel_count()));
+}
 
 void filter_frames(Tool& tool, const FilterFramesOptions& options) {
   if (options.range.empty()) filter_files(tool, options);

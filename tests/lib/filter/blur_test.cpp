@@ -26,6 +26,19 @@ struct Sharp {
   void colour(int x, int y, float value) {
     for (const char* name : {"R", "G", "B"}) of(name, x, y) = value;
   }
+  /// Calls body(x, y) for the pixels of the columns from `left` to before `right`.
+  template <class Body>
+  static void each(int left, int right, const Body& body) {
+    for (int y = 0; y < 32; ++y)
+      for (int x = left; x < right; ++x) body(x, y);
+  }
+  /// Puts a white bar of the depth z [m] into these columns.
+  void white_bar(int left, int right, float z) {
+    each(left, right, [&](int x, int y) {
+      colour(x, y, 1);
+      front(x, y, z);
+    });
+  }
   Image blurred(const BlurOptions& options) const {
     return blur_frame(image, FlowFrame(image, 64, 32, "frame"), options);
   }
@@ -55,13 +68,11 @@ double expected_column(double left, double right, double from, double to, int x)
 /// that opens at the frame's time).
 TEST(Blur, AMovingBarHasRamps) {
   Sharp sharp;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 20; x < 40; ++x) {
-      sharp.colour(x, y, 1);
-      sharp.front(x, y, 2);
-      sharp.of("forward.u", x, y) = 8;
-      sharp.of("backward.u", x, y) = -8;
-    }
+  sharp.white_bar(20, 40, 2);
+  Sharp::each(20, 40, [&](int x, int y) {
+    sharp.of("forward.u", x, y) = 8;
+    sharp.of("backward.u", x, y) = -8;
+  });
   for (const auto& [opens, closes] : {std::pair{-0.25, 0.25}, {0.0, 0.5}}) {
     const Image image = sharp.blurred({opens, closes, 0, 1});
     for (int x = 2; x < 62; ++x)
@@ -74,12 +85,11 @@ TEST(Blur, AMovingBarHasRamps) {
 TEST(Blur, ALineBecomesAStripOfTheRightWidth) {
   for (const float way : {0.3f, 1.0f, 5.0f}) {
     Sharp sharp;
-    for (int y = 0; y < 32; ++y)
-      for (int x = 0; x < 64; ++x) {
-        sharp.colour(x, y, x == 32 ? 1 : 0);
-        sharp.of("forward.u", x, y) = way;
-        sharp.of("backward.u", x, y) = -way;
-      }
+    Sharp::each(0, 64, [&](int x, int y) {
+      sharp.colour(x, y, x == 32 ? 1 : 0);
+      sharp.of("forward.u", x, y) = way;
+      sharp.of("backward.u", x, y) = -way;
+    });
     const Image image = sharp.blurred({-0.5, 0.5, 0, 1});
     double sum = 0, square = 0;
     for (int x = 0; x < 64; ++x) {
@@ -111,12 +121,11 @@ TEST(Blur, APointBecomesADisc) {
 /// the wall. Meant to catch: discs without depth order.
 TEST(Blur, WhatIsInFocusStaysSharp) {
   Sharp sharp;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const bool bar = x >= 24 && x < 32;
-      if (bar) sharp.front(x, y, 1);
-      sharp.colour(x, y, bar ? 0.0f : 1.0f);
-    }
+  Sharp::each(0, 64, [&](int x, int y) {
+    const bool bar = x >= 24 && x < 32;
+    if (bar) sharp.front(x, y, 1);
+    sharp.colour(x, y, bar ? 0.0f : 1.0f);
+  });
   const Image image = sharp.blurred({0, 0, 10, 1});
   for (int x = 0; x < 64; ++x) EXPECT_NEAR(column(image, x), x >= 24 && x < 32 ? 0 : 1, 1e-6) << x;
 }
@@ -124,11 +133,7 @@ TEST(Blur, WhatIsInFocusStaysSharp) {
 /// A bar off the focus before a sharp wall has soft edges on both sides of the edge: half its light at the edge.
 TEST(Blur, WhatIsInFrontCoversWhatIsBehind) {
   Sharp sharp;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 20; x < 44; ++x) {
-      sharp.front(x, y, 1);
-      sharp.colour(x, y, 1);
-    }
+  sharp.white_bar(20, 44, 1);
   const Image image = sharp.blurred({0, 0, 8, 4});  // radius 6
   EXPECT_NEAR((column(image, 19) + column(image, 20)) / 2, 0.5, 0.05);
   EXPECT_NEAR((column(image, 43) + column(image, 44)) / 2, 0.5, 0.05);
@@ -140,8 +145,7 @@ TEST(Blur, WhatIsInFrontCoversWhatIsBehind) {
 
 TEST(Blur, NothingIsBlurredWhereNothingMoves) {
   Sharp sharp;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 64; ++x) sharp.colour(x, y, float(x * y % 7));
+  Sharp::each(0, 64, [&](int x, int y) { sharp.colour(x, y, float(x * y % 7)); });
   const Image image = sharp.blurred({-1, 1, 0, 1});
   EXPECT_EQ(image.find("R")->values, sharp.image.find("R")->values);
 }
@@ -149,13 +153,12 @@ TEST(Blur, NothingIsBlurredWhereNothingMoves) {
 /// Numbers at the ends of their range leave no NaN.
 TEST(Blur, EndsOfTheRange) {
   Sharp sharp;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 64; ++x) {
-      sharp.colour(x, y, x == 9 ? 3e38f : 1.0f);
-      sharp.of("Z", x, y) = x < 20 ? 0.0f : x < 40 ? 1e-30f : INFINITY;
-      sharp.of("forward.u", x, y) = y < 9 ? 3e38f : 1e4f;
-      sharp.of("backward.v", x, y) = y < 20 ? -3e38f : 5.0f;
-    }
+  Sharp::each(0, 64, [&](int x, int y) {
+    sharp.colour(x, y, x == 9 ? 3e38f : 1.0f);
+    sharp.of("Z", x, y) = x < 20 ? 0.0f : x < 40 ? 1e-30f : INFINITY;
+    sharp.of("forward.u", x, y) = y < 9 ? 3e38f : 1e4f;
+    sharp.of("backward.v", x, y) = y < 20 ? -3e38f : 5.0f;
+  });
   for (const double focus : {1e-6, 1.0, double(INFINITY)}) {
     const Image image = sharp.blurred({-50, 50, 1e9, focus});
     for (const float value : image.find("R")->values) EXPECT_TRUE(std::isfinite(value));

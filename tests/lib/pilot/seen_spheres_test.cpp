@@ -86,8 +86,8 @@ TEST(SpheresAround, OnePlaceIsOneCell) {
 TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
   const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000),
                                   after = room({100.301, 2.2, -40.6}, 4, 3000);
-  EXPECT_EQ(formats::view_text({spheres_around(before, 700), {}}),
-            formats::view_text({spheres_around(after, 700), {}}));
+  EXPECT_EQ(formats::view_text({spheres_around(before, 700), {}, {}}),
+            formats::view_text({spheres_around(after, 700), {}, {}}));
 }
 
 // ---- cameras on a lattice
@@ -124,9 +124,9 @@ class CamerasOfARoom : public testing::Test {
 TEST_F(CamerasOfARoom, OfACellSeeTheSame) {
   const SeenAround first = look(camera_at({0.2, 1.2, 1}, 0.02));
   ASSERT_FALSE(first.places.empty());
-  const std::string view = formats::view_text({spheres_around(first.places, 420), {}});
+  const std::string view = formats::view_text({spheres_around(first.places, 420), {}, {}});
   for (const Vec3d eye : {Vec3d{0.3, 1.2, 1}, Vec3d{0.2, 1.3, 1}, Vec3d{0.2, 1.2, 0.9}, Vec3d{-0.1, 1, 1.4}}) {
-    EXPECT_EQ(formats::view_text({spheres_around(look(camera_at(eye, 0.02)).places, 420), {}}), view);
+    EXPECT_EQ(formats::view_text({spheres_around(look(camera_at(eye, 0.02)).places, 420), {}, {}}), view);
     EXPECT_EQ(look(camera_at(eye, -0.1)).looked, first.looked);
   }
   EXPECT_NE(look(camera_at({0.2, 1.2, 1}, 0.5)).looked, first.looked);
