@@ -70,7 +70,7 @@ set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes
   --recipes "$TOP/pipelines/show.sh"
 
 . "${0%/*}/made.sh"
-plan=plan.mk folder=$OUT copies='' planning='' fresh=''
+plan=plan.mk folder=$OUT copies='' planning='' fresh='' ran_jobs=''
 ours=tmp.$(uname -n).$$   # ends the names of the files and folders of this make
 [ -d "$OUT" ] || fresh=yes
 # Makes a folder that all machines see, if RUN is set: other machines see OUT, and not /tmp.
@@ -80,8 +80,10 @@ shared_aside() {
   mkdir "$aside"
 }
 shared_aside 2> /dev/null || aside=$(mktemp -d) || exit 3
-# Removes the files of this make. Removes an OUT that this make has made, too, if OUT holds no plan and no other file.
+# Removes the files of this make, and what its killed commands have left unfinished. Removes an OUT that this make has
+# made, too, if OUT holds no plan and no other file.
 clean_up() {
+  [ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || sh "$PIPELINES/tidy.sh" "$OUT" > /dev/null
   rm -rf "$aside"
   [ -z "$copies" ] || rm -f "$OUT/$plan" "$OUT/$PLAN_JSON"
   [ -z "$fresh" ] || [ -e "$OUT/plan.mk" ] || {
@@ -177,7 +179,6 @@ if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
 # With RUN, commands are joined into jobs first. What they leave, such as the copy of a frame that was removed, is made
 # by the rules as below.
-ran_jobs=
 slurm() {
   ran_jobs=yes
   (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$aside/jobs" || exit
