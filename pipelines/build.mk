@@ -14,7 +14,7 @@ configured: deps ; @$(in_top) { test -f build/release/build.ninja || cmake --pre
 build: configured ; @$(in_top) cmake --build --preset release --target tools
 build_all: configured ; @$(in_top) cmake --build --preset release
 check: build_all # all tests; skipped tests are counted and named
-	@$(in_top) ctest --preset release -j 2; code=$$?; \
+	@$(in_top) ctest --preset release -j 3; code=$$?; \
 	sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
 # Measurements. They use the programs of this tree and write to OUT. tests/bench/evidence.py has the words of PARTS.
 evidence: PACKAGES += valgrind

@@ -17,6 +17,9 @@ import pyluxcore
 pyluxcore.Init()
 state = {}
 
+# From the axes of its maps, z up, to ours: columns. The left edge of a map is at -Z, a quarter further is +X (formats/conventions.md).
+OF_MAP = [0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1]
+
 
 def properties(values):
     props = pyluxcore.Properties()
@@ -77,7 +80,8 @@ def load(job):
     for i, lamp in enumerate(found["lights"]):
         scene.Parse(properties(light(i, lamp)))
     if job.get("world"):
-        scene.Parse(properties({"scene.lights.w.type": "infinite", "scene.lights.w.file": job["world"], "scene.lights.w.gamma": 1.0}))
+        scene.Parse(properties({"scene.lights.w.type": "infinite", "scene.lights.w.file": job["world"], "scene.lights.w.gamma": 1.0,
+                                "scene.lights.w.transformation": OF_MAP}))
     elif job.get("sky") and max(job["sky"]) > 0:
         scene.Parse(properties({"scene.lights.w.type": "constantinfinite", "scene.lights.w.color": job["sky"]}))
     camera, (width, height) = found["camera"], found["size"]
