@@ -9,7 +9,7 @@ namespace tempolux {
 namespace {
 
 /// The share of light that a lobe of this albedo lets through.
-float let_through(const LobeAlbedo& albedo) { return std::max(0.0f, 1 - max_component(albedo.total())); }
+float let_through(const LobeAlbedo& albedo) { return std::max(0.0f, 1 - albedo.kept); }
 
 }  // namespace
 

@@ -25,8 +25,9 @@ namespace tempolux {
 /// Coupled Specular-Matte BRDF Model", EG 2001. If a lobe of albedo A lies above the Lambert lobe, the value of the
 /// Lambert lobe is multiplied by
 ///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean).
-/// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. With several lobes
-/// above, c(w) is the product of their factors, and
+/// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. Of a surface that
+/// is metal in part, A is the albedo of the dielectric alone: the metal lies beside the Lambert lobe, not above it.
+/// With several lobes above, c(w) is the product of their factors, and
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
 /// c(wi) does not depend on wo, and c(wo) does not depend on wi. So records, points and photons can store light that is
 /// already multiplied by c(wi), and a reader multiplies it by c(wo) for its own direction. This is exact for every wo,
@@ -40,6 +41,7 @@ namespace tempolux {
 /// of kMirrorRoughness under a Mirror (opaque_lobes.h), with
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic).
+/// It is the mixture of a dielectric and a metal by `metallic` (PartMetal).
 /// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
 /// above these, with F0 = 0.04 clearcoat and F90 = clearcoat. A coat with a normal of its own is a Coat (coat.h).
 /// Between the two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider
@@ -109,9 +111,10 @@ class Bsdf {
   /// A_S(wo) [1]: the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a
   /// matte material. Glass is not included.
   Rgb specular_albedo(Vec3 wo) const;
-  /// The share of uniform light that the Lambert lobe reflects towards wo [1]: (1 - transmission) rho (1 - A_S(wo)).
+  /// The share of uniform light that the Lambert lobe reflects towards wo [1]: (1 - transmission) rho (1 - A(wo)), A as
+  /// in the head of this class.
   Rgb diffuse_reflectance(Vec3 wo) const;
-  /// Weight [1] of light from wi in an irradiance E: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material. With
+  /// Weight [1] of light from wi in an irradiance E: (1 - A(wi)) / (1 - A_mean), 1 for a matte material. With
   /// this weight diffuse_reflectance(wo) E / pi is exactly the radiance that f_D reflects.
   float arrival_weight(Vec3 wi) const;
   /// The same for wi in scene space; normal: the z axis of the local frame.
@@ -183,6 +186,7 @@ class Bsdf {
   struct Layer {
     Layer() {}  ///< sets no byte of the lobe: the compiler would clear all of them for every hit
     std::variant<std::monostate, Mirror, Gloss, AnisotropicGloss, Sheen, Coat<Mirror>, Coat<Gloss>,
+                 BasicMirror<PartMetal>, BasicGloss<RoundGgx, PartMetal>, BasicGloss<AnisotropicGgx, PartMetal>,
                  BasicMirror<ThinFilm>, BasicGloss<RoundGgx, ThinFilm>, BasicGloss<AnisotropicGgx, ThinFilm>>
         lobe;
   };

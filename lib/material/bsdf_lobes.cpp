@@ -16,6 +16,10 @@ Rgb dielectric_f0(const MaterialValues& m) {
          m.specular;
 }
 
+PartMetal part_metal(const MaterialValues& m) {
+  return {Schlick{dielectric_f0(m), m.specular}, Schlick{m.base_color, 1}, m.metallic};
+}
+
 }  // namespace
 
 // Here a material becomes lobes: those of event S from the top down, then the Lambert lobe.
@@ -38,6 +42,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front, const Frame* frame, Carri
     const Schlick fresnel{dielectric_f0(material) * (1 - metallic) + material.base_color * metallic, f90};
     if (material.anisotropy + material.iridescence > 0) [[unlikely]]
       add_reflection(material, fresnel, frame);
+    else if (has_lambert_ && metallic > 0) add_round(part_metal(material), material.roughness);
     else add_round(fresnel, material.roughness);
   }
   if (material.diffuse_transmission > 0) [[unlikely]] {
@@ -81,6 +86,7 @@ inline void Bsdf::add_round(const Fresnel& fresnel, float roughness) {
   if (const float factor = material.iridescence; factor > 0)
     add_directed(material, ThinFilm(fresnel, factor, material.iridescence_ior, material.iridescence_thickness_maximum),
                  frame);
+  else if (material.metallic > 0 && material.metallic < 1) add_directed(material, part_metal(material), frame);
   else add_directed(material, fresnel, frame);
 }
 
@@ -106,7 +112,7 @@ void Bsdf::add(const Parameters&... parameters) {
   Layer& layer = stack_[lobes_++];
   const AnyLobe& lobe = layer.lobe.emplace<AnyLobe>(parameters...);
   if (!AnyLobe::kDelta && !far_side_) ++spread_;
-  const float rest = 1 - lobe.mean_albedo();
+  const float rest = 1 - lobe.mean_kept();
   if (rest > 1e-6f) coupling_scale_ *= 1 / std::sqrt(rest);
   else lit_ = false;
 }

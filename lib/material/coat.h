@@ -31,7 +31,7 @@ class Coat {
 
   /// Expresses the normal in another local frame.
   void turn(const Frame& from, const Frame& to) { normal_ = to.to_local(from.to_world(normal_)); }
-  float mean_albedo() const { return reflection_.mean_albedo(); }
+  float mean_kept() const { return reflection_.mean_kept(); }
   LobeAlbedo albedo(Vec3 w) const { return reflection_.albedo({0, 0, std::max(kGrazing, dot(w, normal_))}); }
   Rgb eval(LobeDirection wi, LobeDirection wo) const {
     const float ci = dot(wi.w, normal_), co = dot(wo.w, normal_);

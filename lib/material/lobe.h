@@ -11,8 +11,10 @@ namespace tempolux {
 struct LobeAlbedo {
   Rgb single{0.0f}, multiple{0.0f};  ///< shares reflected by one and by several microfacets
   float lost = 0;                    ///< 1 - E: the share that GGX alone would lose at F = 1
+  float kept = 0;                    ///< share that the lobes below do not get, equal for all channels
   float passed = 1;                  ///< share of light that passes the lobes above, which Bsdf sets
   Rgb total() const { return single + multiple; }
+  void keep_largest() { kept = max_component(total()); }  ///< the lobes below get what no channel reflects
 };
 
 /// A direction as one lobe sees it: unit, local frame.
@@ -37,7 +39,7 @@ struct LobeSample {
 // A lobe of event S is a class with these functions. Bsdf calls them only for wi and wo on the side z > 0.
 //
 //   static constexpr bool kDelta         true for a mirror: eval() and pdf_solid_angle() return 0
-//   float mean_albedo() const            cosine-weighted mean of the albedo [1], in its largest channel
+//   float mean_kept() const              cosine-weighted mean of LobeAlbedo::kept [1]
 //   LobeAlbedo albedo(Vec3 w) const
 //   Rgb eval(wi, wo) const               f [1/sr], with the lobe's share and passed_both()
 //   float pdf_solid_angle(Vec3 wi, wo) const         pdf with which sample() draws wi [1/sr]

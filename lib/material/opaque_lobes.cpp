@@ -1,6 +1,7 @@
 #include "lib/material/opaque_lobes.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "lib/material/thin_film.h"
 
@@ -32,6 +33,20 @@ Rgb Schlick::at(float cos_h) const {
 Rgb Schlick::mean() const { return (f0 * 20 + Rgb(f90)) / 21; }
 
 template <class Fresnel>
+float BasicMirror<Fresnel>::mean_kept() const {
+  if constexpr (std::is_same_v<Fresnel, PartMetal>) return fresnel_.dielectric.mean_of_largest();
+  else return fresnel_.mean_of_largest();
+}
+
+template <class Fresnel>
+LobeAlbedo BasicMirror<Fresnel>::albedo(Vec3 w) const {
+  LobeAlbedo found{.single = fresnel_.at(w.z)};
+  if constexpr (std::is_same_v<Fresnel, PartMetal>) found.kept = max_component(fresnel_.dielectric.at(w.z));
+  else found.keep_largest();
+  return found;
+}
+
+template <class Fresnel>
 void BasicMirror<Fresnel>::sample(LobeDirection wo, float, Vec2, LobeSample& s) const {
   if (!(max_component(wo.albedo.single) > 0)) return;
   s.delta = true;
@@ -50,18 +65,32 @@ BasicGloss<Width, Fresnel>::BasicGloss(const Fresnel& fresnel, const Width& widt
   const AlbedoPair m = width_.mean_albedo();
   const float e = m.a + m.b;
   mean_lost_ = 1 - e;
-  if (const float fade = smooth_step((mean_lost_ - kLeastLost) / (2 * kLeastLost)); fade > 0) {
-    const Rgb mean = fresnel_.mean();
-    for (int c = 0; c < 3; ++c) multiple_[c] = fade * mean[c] * mean[c] * e / (1 - mean[c] * mean_lost_) / mean_lost_;
+  const float fade = smooth_step((mean_lost_ - kLeastLost) / (2 * kLeastLost));
+  const auto multiple = [&](float mean) { return fade * mean * mean * e / (1 - mean * mean_lost_) / mean_lost_; };
+  const auto multiples = [&](const Rgb& mean) {
+    return fade > 0 ? Rgb{multiple(mean.r), multiple(mean.g), multiple(mean.b)} : Rgb(0.0f);
+  };
+  const float lost2 = mean_lost_ * mean_lost_;
+  if constexpr (std::is_same_v<Fresnel, PartMetal>) {
+    const Rgb above = multiples(fresnel_.dielectric.mean());
+    multiple_ = above * (1 - fresnel_.metallic) + multiples(fresnel_.metal.mean()) * fresnel_.metallic;
+    kept_multiple_ = max_component(above);
+    mean_kept_ = fresnel_.dielectric.mean_albedo(width_, m) + kept_multiple_ * lost2;
+  } else {
+    multiple_ = multiples(fresnel_.mean());
+    mean_kept_ = fresnel_.mean_albedo(width_, m) + max_component(multiple_) * lost2;
   }
-  mean_albedo_ = fresnel_.mean_albedo(width_, m) + max_component(multiple_) * mean_lost_ * mean_lost_;
 }
 
 template <class Width, class Fresnel>
 LobeAlbedo BasicGloss<Width, Fresnel>::albedo(Vec3 w) const {
   const AlbedoPair e = width_.albedo(w);
   const float lost = std::max(0.0f, 1 - (e.a + e.b));
-  return {fresnel_.albedo(width_, w, e), multiple_ * (mean_lost_ * lost), lost};
+  LobeAlbedo found{fresnel_.albedo(width_, w, e), multiple_ * (mean_lost_ * lost), lost};
+  if constexpr (std::is_same_v<Fresnel, PartMetal>)
+    found.kept = fresnel_.dielectric.mean_albedo(width_, e) + kept_multiple_ * (mean_lost_ * lost);
+  else found.keep_largest();
+  return found;
 }
 
 /// f [1/sr] without share and coupling.
@@ -102,6 +131,9 @@ Rgb BasicGloss<Width, Fresnel>::weight(LobeDirection wi, LobeDirection wo, float
 }
 
 template class BasicMirror<Schlick>;
+template class BasicMirror<PartMetal>;
+template class BasicGloss<RoundGgx, PartMetal>;
+template class BasicGloss<AnisotropicGgx, PartMetal>;
 template class BasicGloss<RoundGgx>;
 template class BasicGloss<AnisotropicGgx>;
 template class BasicMirror<ThinFilm>;

@@ -49,6 +49,18 @@ struct Schlick {
   }
 };
 
+/// Schlick's Fresnel term of a surface that is metal in part: the mixture of a dielectric's and a metal's. The Lambert
+/// lobe lies below the dielectric alone, and the metal beside it (glTF 2.0, appendix B).
+struct PartMetal : Schlick {
+  Schlick dielectric, metal;
+  float metallic;  ///< share of the metal [1]
+  PartMetal(const Schlick& d, const Schlick& m, float share)
+      : Schlick{d.f0 * (1 - share) + m.f0 * share, d.f90 * (1 - share) + m.f90 * share},
+        dielectric(d),
+        metal(m),
+        metallic(share) {}
+};
+
 /// Reflects F(cos) of the light from one direction into one other.
 /// Fresnel is Schlick or has its functions (ThinFilm).
 template <class Fresnel>
@@ -57,8 +69,8 @@ class BasicMirror {
   static constexpr bool kDelta = true;
 
   explicit BasicMirror(const Fresnel& fresnel) : fresnel_(fresnel) {}
-  float mean_albedo() const { return fresnel_.mean_of_largest(); }
-  LobeAlbedo albedo(Vec3 w) const { return {.single = fresnel_.at(w.z)}; }
+  float mean_kept() const;
+  LobeAlbedo albedo(Vec3 w) const;
   Rgb eval(LobeDirection, LobeDirection) const { return Rgb(0.0f); }
   float pdf_solid_angle(Vec3, LobeDirection) const { return 0; }
   void sample(LobeDirection wo, float u_lobe, Vec2 u, LobeSample& s) const;
@@ -97,14 +109,15 @@ class RoundGgx {
 /// albedo A(w) is F0 a + F90 b + F_ms (1 - E) with a + b = E; a and b come from a table. f_ms is faded in between the
 /// roughnesses 0.23 and 0.34, where GGX loses 1 and 3 % on average. Below them grazing light loses up to 11 %.
 ///
-/// Width says how wide GGX is: RoundGgx or AnisotropicGgx (anisotropic_ggx.h). Fresnel is Schlick or has its functions.
+/// Width says how wide GGX is: RoundGgx or AnisotropicGgx (anisotropic_ggx.h). Fresnel is Schlick, PartMetal, or has
+/// the functions of Schlick.
 template <class Width, class Fresnel = Schlick>
 class BasicGloss {
  public:
   static constexpr bool kDelta = false;
 
   BasicGloss(const Fresnel& fresnel, const Width& width, float share);
-  float mean_albedo() const { return mean_albedo_; }
+  float mean_kept() const { return mean_kept_; }
   LobeAlbedo albedo(Vec3 w) const;
   Rgb eval(LobeDirection wi, LobeDirection wo) const;
   float pdf_solid_angle(Vec3 wi, LobeDirection wo) const;
@@ -122,7 +135,8 @@ class BasicGloss {
   Width width_;
   Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in
   float mean_lost_;     ///< 1 - E_mean
-  float mean_albedo_;
+  float mean_kept_;
+  float kept_multiple_ = 0;  ///< multiple_ of PartMetal's dielectric
 };
 using Gloss = BasicGloss<RoundGgx>;
 using AnisotropicGloss = BasicGloss<AnisotropicGgx>;

@@ -21,7 +21,9 @@ LobeAlbedo Sheen::albedo(Vec3 w) const {
       const float* e = sheen_table::kAlbedo[row_ + i][column + j];
       albedo += weight_[i] * across[j] * e[0], raw += weight_[i] * across[j] * e[1];
     }
-  return {.single = color_ * std::clamp(albedo, 0.0f, 1.0f), .lost = std::max(1.0f, raw)};
+  LobeAlbedo found{.single = color_ * std::clamp(albedo, 0.0f, 1.0f), .lost = std::max(1.0f, raw)};
+  found.keep_largest();
+  return found;
 }
 
 /// f [1/sr] for white, without share and coupling.

@@ -38,7 +38,7 @@ class Sheen {
   static constexpr float kLeastRoughness = 0.07f;
 
   Sheen(Rgb color, float roughness, float share);
-  float mean_albedo() const { return max_component(color_) * mean_; }
+  float mean_kept() const { return max_component(color_) * mean_; }
   /// `lost` holds max(1, E(w)).
   LobeAlbedo albedo(Vec3 w) const;
   Rgb eval(LobeDirection wi, LobeDirection wo) const;

@@ -52,7 +52,7 @@ Material random_white(std::uint32_t i) {
   const PathRandom random(17, i);
   const auto u = [&](std::uint32_t n) { return random.get1(n, Purpose::test); };
   Material m = brushed(0.34f + 0.66f * u(0), u(1) < 0.5f ? u(2) : 0, 2 * kPi * u(3));
-  m.metallic = u(4) < 0.4f ? 1 : 0;  // between the two the mixture of F0 and rho absorbs light
+  m.metallic = std::clamp(2 * u(4) - 0.5f, 0.0f, 1.0f);
   m.clearcoat = u(6) < 0.3f ? 0 : u(7);
   m.clearcoat_roughness = u(8);
   if (u(9) < 0.6f) m.sheen_color = Rgb(u(10));
@@ -193,18 +193,19 @@ TEST(Furnace, EachLobeAloneOverWhite) {
 TEST(Furnace, TwoHundredRandomLayeredMaterials) {
   double lost = 0, most = 0, most_matte = 0;
   for (std::uint32_t i = 0; i < 200; ++i) {
-    const Bsdf bsdf = bsdf_of(random_white(i));
+    const Material material = random_white(i);
+    const Bsdf bsdf = bsdf_of(material);
+    const double of_layers = 0.02 + 0.09 * double(material.metallic), noise = 0.015;
     for (float c : {0.1f, 0.5f, 0.95f}) {
       const double seen = sampled(bsdf, direction(c, 1), 13);
-      EXPECT_LE(seen, 1.015) << i << ' ' << c;
+      EXPECT_LE(seen, 1 + noise) << i << ' ' << c;
+      EXPECT_GE(seen, 1 - of_layers - noise) << i << ' ' << c;
       EXPECT_LE(reported(bsdf, direction(c, 1)), 1.0001) << i;
       lost += (1 - seen) / 600, most = std::max(most, 1 - seen);
       if (bsdf.has_diffuse()) most_matte = std::max(most_matte, 1 - seen);
     }
   }
   EXPECT_LE(lost, 0.01);
-  EXPECT_LE(most, 0.12);
-  EXPECT_LE(most_matte, 0.02 + 0.015);
   RecordProperty("lost", std::to_string(lost) + " " + std::to_string(most) + " " + std::to_string(most_matte));
 }
 
