@@ -9,6 +9,7 @@ import argparse
 import os
 import re
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -57,6 +58,7 @@ def main():
     parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--only", default="S2,S4")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))   # the daemons end, too
     with tempfile.TemporaryDirectory(prefix="farm") as name:
         folder = Path(name)
         os.chmod(folder, 0o755)
