@@ -134,7 +134,8 @@ list() {
         all = all " " name[key]
         if (most[key] > largest) largest = most[key]
       }
-      if (files || !there(sheet)) print_job("last", largest, shown * 0.75e-6 * pixels / (measured ? threads : 1), all, " demo", "")
+      looks = shown * 0.75e-6 * pixels
+      if (files || !there(sheet)) print_job("last", largest, measured ? looks / threads : looks, all, " demo", "")
     }
     function print_job(name, bytes, seconds, jobs, makes, also) {
       sub(/^ /, "", jobs); sub(/^ /, "", makes); sub(/^ /, "", also)
