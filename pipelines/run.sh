@@ -109,10 +109,10 @@ estimate() {   # makes the first picture at two small sizes; prints options of s
     --stats "$aside/planned.json" || exit
   wanted=
   spend; before=$spent
-  # The samples print their progress for nobody: it costs time, too.
+  # The samples print their progress for nobody: it costs time, too. Make runs inside $aside.
   for plan in small.mk large.mk; do
     : > "$aside/said"
-    PROGRESS="$aside/said" TOTAL=0 WEIGHT=0 BEGAN=0 PLAN="$plan" ending makes_sample > /dev/null || exit
+    PROGRESS=said TOTAL=0 WEIGHT=0 BEGAN=0 PLAN="$plan" ending makes_sample > /dev/null || exit
   done
   spend; awk "BEGIN { print $spent - $before }" > "$aside/made"
   "$BIN/scene-plan" --estimate "$aside" || exit
