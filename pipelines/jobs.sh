@@ -49,7 +49,8 @@ list() {
   segments=$(sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "${PLAN_JSON:-plan.json}" |
     paste -sd ' ')
   { costs; echo; cat "$PLAN"; } | awk -v group="${GROUP:-frame}" -v segments="$segments" -v measured="$MEASURED_ONLY" \
-    "$margins"'
+    -v rest="${REST:-0}" -v threads="${THREADS:-1}" \
+    -v pixels=$(($(echo "${SIZE:-640x360}" | tr x '*'))) "$margins"'
     function there(file,   line) {
       if (!(file in known)) { known[file] = (getline line < file) >= 0; close(file) }
       return known[file]
@@ -79,13 +80,13 @@ list() {
       at = index($0, ": |")
       if (!at || $0 ~ /^\t/) next
       target = $1; sub(/:$/, "", target)
-      rest = substr($0, at + 3); gsub(/\$\([a-z]*\)/, "", rest)
-      inputs[target] = rest
+      from = substr($0, at + 3); gsub(/\$\([a-z]*\)/, "", from)
+      inputs[target] = from
       n = split(substr($0, 1, at - 1), beside, " ")
-      for (i = 2; i <= n; ++i) inputs[beside[i]] = target
-      if (target ~ /^frames\/.*[.]exr$/) { split(rest, of, " "); frames[++shown] = of[1] " " of[2] }
-      if (target ~ /^frames\/.*[.]png$/) { split(rest, of, " "); previews[of[2]] = previews[of[2]] " " of[1] }
-      if (target ~ /^shown\/exposure-/) { split(rest, of, " "); exposed = of[1]; exposure = target }
+      for (i = 2; i <= n; ++i) { inputs[beside[i]] = target; second[beside[i]] }
+      if (target ~ /^frames\/.*[.]exr$/) { split(from, of, " "); frames[++shown] = of[1] " " of[2] }
+      if (target ~ /^frames\/.*[.]png$/) { split(from, of, " "); previews[of[2]] = previews[of[2]] " " of[1] }
+      if (target ~ /^shown\/exposure-/) { split(from, of, " "); exposed = of[1]; exposure = target }
       if (target ~ /^shown\/sheet-/) sheet = target
     }
     END {
@@ -102,7 +103,7 @@ list() {
         folder = folder_of(file)
         if (folder == "shown") continue
         computes[key]
-        seconds[key] += cpu[folder]
+        if (!(file in second)) seconds[key] += measured ? cpu[folder] / threads + rest : cpu[folder]
         if (bytes[folder] > most[key]) most[key] = bytes[folder]
       }
       # What other jobs read, and what they wait for.
@@ -133,7 +134,8 @@ list() {
         all = all " " name[key]
         if (most[key] > largest) largest = most[key]
       }
-      if (files || !there(sheet)) print_job("last", largest, shown / 50, all, " demo", "")
+      looks = shown * 0.75e-6 * pixels
+      if (files || !there(sheet)) print_job("last", largest, measured ? looks / threads : looks, all, " demo", "")
     }
     function print_job(name, bytes, seconds, jobs, makes, also) {
       sub(/^ /, "", jobs); sub(/^ /, "", makes); sub(/^ /, "", also)
@@ -142,17 +144,23 @@ list() {
     }'
 }
 
-# A job starts as soon as a place is free and what it reads is there, in the order of the list, as in a queue. It takes
-# its CPU seconds divided by its threads. The previews of the last job take 20 ms each.
+# Prints a number of state/costs.json: `plan`, CPU seconds of scene-plan, or `rest`, those of make, shells and previews
+# for each command.
+cost() { sed -n "s/.*\"$1\":\([^,}]*\).*/\1/p" state/costs.json; }
+
+# First scene-plan runs. Then a job starts as soon as a place is free and what it reads is there, in the order of the
+# list, as in a queue. Commands take their CPU seconds divided by their
+# threads; make takes what it takes with one. The last job reads each frame three times: for the digest, the sheet and
+# the account, .75 us a pixel (RGBA, Z, N, id; measured at 1280x720).
 forecast() {
-  all=$(MEASURED_ONLY=yes list)
+  all=$(MEASURED_ONLY=yes REST=$(cost rest) list) PLANNING=$(cost plan)
   for nodes in $(echo "$NODES" | tr , ' '); do echo "$all" | forecast_on "$nodes"; done
 }
 forecast_on() {
-  awk -F '\t' -v nodes="$1" -v cores="$CORES" -v threads="${THREADS:-1}" '
+  awk -F '\t' -v nodes="$1" -v cores="$CORES" -v threads="${THREADS:-1}" -v planning="$PLANNING" '
     {
       name[++jobs] = $1; number[$1] = jobs; before[jobs] = $4
-      memory[jobs] = $2; takes[jobs] = $3 / threads; sum += $3
+      memory[jobs] = $2; takes[jobs] = $3; sum += $3
     }
     END {
       for (j = 1; j <= jobs; ++j) {
@@ -161,6 +169,8 @@ forecast_on() {
         if (memory[j] > largest) largest = memory[j]
       }
       places = nodes * int(cores / threads)
+      sum += planning / threads
+      now = planning / threads
       while (1) {
         for (j = 1; j <= jobs && running < places; ++j)
           if (!(j in ends) && waits[j] == 0) { ends[j] = now + takes[j]; at[++running] = j }
@@ -179,10 +189,11 @@ forecast_on() {
       chain = ""; end = 0
       for (j = 1; j <= jobs; ++j) if (longest(j) > path[end]) end = j
       for (j = end; j; j = through[j]) chain = name[j] (chain ? ", " : "") chain
-      busy = now > 0 ? 100 * sum / (now * nodes * cores) : 100
+      busy = now > 0 ? 100 * sum * threads / (now * nodes * cores) : 100
       printf "%d jobs on %d x %d processors, %d for each job: %.1f s, %.0f %% of the processors busy\n", jobs, nodes,
         cores, threads, now, busy
-      printf "not less than %.1f s on any number, the longest chain of jobs: %s\n", path[end], chain
+      printf "not less than %.1f s on any number: the plan, %.1f s, then the longest chain of jobs: %s\n",
+        planning / threads + path[end], planning / threads, chain
       printf "memory of a job: up to %d MB; of a node: up to %d MB\n", largest, largest * int(cores / threads)
     }
     # Sets path[j]: the least number of seconds from the start of all jobs to the end of this one.

@@ -98,11 +98,23 @@ makes() {   # runs in a subshell; after an error all that does not need the lost
   goal=$1; shift
   exec ${MAKE:-make} -k --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
+makes_sample() { export PROGRESS TOTAL WEIGHT BEGAN; makes demo passing= -s -C "$aside"; }
+spend() {   # sets `spent` to the CPU seconds of all processes that this shell has started and that have ended
+  times > "$aside/times"
+  spent=$(awk -F '[ms ]+' '{ gsub(",", ".") } NR == 2 { printf "%.3f", 60 * ($1 + $3) + $2 + $4 }' "$aside/times")
+}
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
   wanted=estimate
-  made "$aside/small.mk" "$aside/large.mk" -- $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
+  made "$aside/small.mk" "$aside/large.mk" "$aside/planned.json" -- $RUN "$BIN/scene-plan" "$@" --estimate "$aside" \
+    --stats "$aside/planned.json" || exit
   wanted=
-  for plan in small.mk large.mk; do PROGRESS='' ending makes demo passing= -s -C "$aside" > /dev/null || exit; done
+  spend; before=$spent
+  # The samples print their progress for nobody: it costs time, too. Make runs inside $aside.
+  for plan in small.mk large.mk; do
+    : > "$aside/said"
+    PROGRESS=said TOTAL=0 WEIGHT=0 BEGAN=0 PLAN="$plan" ending makes_sample > /dev/null || exit
+  done
+  spend; awk "BEGIN { print $spent - $before }" > "$aside/made"
   "$BIN/scene-plan" --estimate "$aside" || exit
   # A plan in OUT says from now on what its commands cost.
   [ ! -f "$OUT/state/inputs" ] || { cp "$aside/costs.json" "$OUT/state" && rm "$OUT/state/inputs"; }

@@ -6,7 +6,8 @@ mkdir temporary
 estimate() { exec setsid env --default-signal=INT make -f "$HERE/../../Makefile.example" BIN="$(dirname "$(command -v scene-plan)")" SCENE="$HERE/../../pipelines/scenes/S1_cornell.glb" SIZE=96x54 INDIRECT=records OUT=out "$@" estimate; }
 unset MAKEFLAGS MFLAGS MAKELEVEL
 (estimate) > said || bad "exits $?"
-for stage in photon-trace irradcache-build frame-render st-filter; do grep -q "^$stage" said || bad "says nothing of $stage: $(cat said)"; done
+for stage in scene-plan 'make, previews' photon-trace irradcache-build frame-render st-filter; do grep -q "^$stage" said || bad "says nothing of $stage: $(cat said)"; done
+awk '/^make, previews/ { rest = $(NF - 5) } END { exit !(rest > 0.005) }' said || bad "shells cost nothing: $(cat said)"   # a process takes 1 ms, a command has ten
 grep -q '^about [0-9]* s on' said || bad "says: $(cat said)"
 [ -z "$(ls -A temporary)" ] && [ ! -e out ] || bad "left $(ls -A temporary) $(ls -A out)"
 # Points with so many shadow rays take far longer than this test waits.

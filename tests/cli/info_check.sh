@@ -109,6 +109,16 @@ tempolux-info --sheet sheet.png black.png dot.png --columns 1 && tempolux-info -
 py '(d["width"], d["height"]) == (8, 10)' 'sheet: two tiles of 8 x 4 and a gap of 2'
 tempolux-info --png layer.png --layer indirect dot.png 2>errors.txt
 [ $? = 2 ] && [ ! -e layer.png ] && grep -q '^tempolux-info: dot.png: ' errors.txt || bad "missing layer: $(cat errors.txt)"
+# Several files are read at once. The output has their order, and ends before the first bad file.
+many=$(for round in 1 2 3 4 5 6 7 8 9; do ls "$HERE"/../formats/*/accept/worked-example.*; done)
+for file in $many; do tempolux-info --digest "$file"; done >one-by-one.txt
+for threads in 1 5; do
+  tempolux-info --threads $threads --digest $many >out.txt && cmp out.txt one-by-one.txt || bad "digests by $threads threads: another order"
+  echo words >no-file
+  tempolux-info --threads $threads --digest $many no-file $many missing >out.txt 2>errors.txt
+  [ $? = 2 ] && cmp out.txt one-by-one.txt && grep -q '^tempolux-info: no-file: ' errors.txt && [ "$(wc -l <errors.txt)" = 1 ] ||
+    bad "a bad file among many, by $threads threads: $(cat errors.txt)"
+done
 # Channels that are no colour layer, R among them.
 tempolux-info --json "$HERE/../fuzz/corpus/pictures/zip.exr" >out.json || bad 'R without G and B'
 py '[c["channel"] for c in d["channels"]] == ["A", "R", "id"] and d["layers"] == [] and d["channels"][1]["max"] == 39' 'R without G and B'

@@ -40,7 +40,14 @@ sheet=tempolux-info:sheet.png
 all='0000 0001 0002 0003'
 
 cp "$source" "$scene"
+began=$(date +%s.%N)
 make_runs 'the first run makes everything' "$(light $all) $(frames $all) $exposure $sheet"
+seconds=$(echo "$(date +%s.%N) $began" | awk '{ print $1 - $2 }')
+target=timeline
+make_runs 'who ran what when: nothing runs' ''
+target=demo
+python3 -B tests/pipelines/timeline.py "$work/out" "$seconds" > "$work/said" 2>&1 && echo "ok: timeline: $(cat "$work/said")" ||
+  { echo "FAILED: timeline: $(cat "$work/said")"; failed=1; }
 make_runs 'nothing changed: nothing runs' ''
 touch "$scene"
 make_runs 'scene touched: only scene-plan' ''

@@ -9,6 +9,7 @@
 #include "lib/image/object_names.h"
 #include "lib/audit/advice.h"
 #include "lib/audit/audit.h"
+#include "tools/info/each_file.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -80,14 +81,16 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
   std::size_t unbiased = 0;
   LitBy lit = LitBy::points;
-  for (const std::string& file : files) {
+  const auto read = [](const std::string& file) {
     ExrReadOptions attributes;  // and one channel: an EXR image without any is invalid
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
-    const Image image = load_exr(file, attributes);
+    return load_exr(file, attributes);
+  };
+  each_file(files, read, [&](const std::string& file, const Image& image) {
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l].name, file, sums[l]);
     unbiased += number(image, "audit.unbiased") != nullptr;
     if (number(image, "audit.texture")) lit = LitBy::texture;
-  }
+  });
   FramesAccount account;
   bool audited = false;
   if (unbiased == files.size()) account.line = "no bias, as camera paths find all light";

@@ -7,6 +7,7 @@
 #include "formats/error.h"
 #include "lib/core/json.h"
 #include "lib/scene/gltf_load.h"
+#include "tools/info/each_file.h"
 
 namespace tempolux::tools {
 namespace {
@@ -46,14 +47,14 @@ int print_files(Tool& tool, const Request& request) {
     tool.depends_on(request.scene);
     names = load_gltf(request.scene).object_names;
   }
-  for (const std::string& file : request.files) {
-    Facts facts = facts_of(file, true);
+  const auto read = [](const std::string& file) { return facts_of(file, true); };
+  each_file(request.files, read, [&](const std::string& file, Facts facts) {
     name_objects(names, facts);
     if (request.digest && !request.json) std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
     else if (request.digest) all.push_back({{"file", file}, {"digest", facts["digest"]}});
     else if (request.json) all.push_back(facts);
     else print(facts, false);
-  }
+  });
   if (request.json) print(all.size() == 1 ? all[0] : all, true);
   return exit_ok;
 }

@@ -12,6 +12,7 @@
 #include "lib/image/statistics.h"
 #include "lib/image/why_mask.h"
 #include "tools/common/file_head.h"
+#include "tools/info/each_file.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -133,23 +134,24 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
   const auto step = [&] {
     if (options.progress) options.progress(++done / steps);
   };
-  if (!preview.exposure_stops) {  // frames are read twice, so that only one is in memory
+  if (!preview.exposure_stops) {  // frames are read twice, so that few are in memory
     std::vector<double> stops;
-    for (const std::string& path : paths) {
-      const Image image = load_shown(path, options);
-      stops.push_back(stops_of(path, image, options.layer));
+    const auto read = [&](const std::string& path) { return stops_of(path, load_shown(path, options), options.layer); };
+    each_file(paths, read, [&](const std::string&, double of_frame) {
+      stops.push_back(of_frame);
       step();
-    }
+    });
     preview.exposure_stops = sequence_exposure_stops(stops);
   }
   std::vector<Picture> pictures;
-  for (const std::string& path : paths) {
-    const Image image = load_shown(path, options);
-    const Picture picture = picture_of(path, image, preview);
-    pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
-    if (std::find(options.marked.begin(), options.marked.end(), path) != options.marked.end()) mark(pictures.back());
+  const auto tile = [&](const std::string& path) {
+    return contact_sheet({picture_of(path, load_shown(path, options), preview)}, 1, options.tile_width);
+  };
+  each_file(paths, tile, [&](const std::string& path, Picture picture) {
+    if (std::find(options.marked.begin(), options.marked.end(), path) != options.marked.end()) mark(picture);
+    pictures.push_back(std::move(picture));
     step();
-  }
+  });
   save_png(output.temporary_path(), contact_sheet(pictures, options.columns, options.tile_width));
 }
 

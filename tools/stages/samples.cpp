@@ -67,6 +67,14 @@ struct Cost {
   double memory = 0;  ///< largest of its processes, bytes
 };
 
+/// The statistics of the processes that have made a file. A warped frame is warped and completed.
+std::vector<std::string> stats_of(const std::string& folder, const std::string& file) {
+  std::vector<std::string> found;
+  for (const char* end : {".json", ".warp.json"})
+    if (std::string stats = folder + "/" + beside(file, end); fs::exists(stats)) found.push_back(std::move(stats));
+  return found;
+}
+
 /// `files`: names of the files in `folder` that each command of the stage writes. Some may not have been needed, as
 /// keys in the middle of an interval that was not halved. Empty if none has statistics.
 std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
@@ -74,22 +82,38 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
   Cost sum;
   double count = 0;
   for (const std::vector<std::string>& names : files) {
-    const std::string stats = folder + "/" + beside(names.front(), ".json");
-    if (!fs::exists(stats)) continue;
+    const std::vector<std::string> processes = stats_of(folder, names.front());
+    if (processes.empty()) continue;
     ++count;
-    const Json json = read_json(stats);
-    double in_work = 0;
-    for (const auto& phase : json.at("phases"))
-      if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
-    sum.memory = std::max(sum.memory, json.at("peak_memory_bytes").get<double>());
-    sum.work_cpu_s += in_work;
-    sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
+    for (const std::string& stats : processes) {
+      const Json json = read_json(stats);
+      double in_work = 0;
+      for (const auto& phase : json.at("phases"))
+        if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
+      sum.memory = std::max(sum.memory, json.at("peak_memory_bytes").get<double>());
+      sum.work_cpu_s += in_work;
+      sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
+    }
     for (const std::string& name : names)
       if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
   return count == 0
              ? std::nullopt
              : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count, sum.memory});
+}
+
+/// The rest of the CPU seconds of make, for each command of a stage: shells, make, previews and the sheet. FOLDER/made
+/// has the CPU seconds of all processes of both samples. They share files that do not depend on the size.
+double rest_of(const std::string& folder, const Json& samples) {
+  std::set<std::string> commands;
+  double rest = 0;
+  std::ifstream(folder + "/made") >> rest;
+  for (const char* sample : kSamples)
+    for (const auto& [stage, files] : samples.at(sample).items())
+      for (const std::vector<std::string> names : files)
+        for (const std::string& stats : stats_of(folder, names.front()))
+          if (commands.insert(stats).second) rest -= read_json(stats).at("cpu_s").get<double>();
+  return commands.empty() ? 0 : std::max(0.0, rest) / double(commands.size());
 }
 
 }  // namespace
@@ -140,8 +164,10 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
   if (!fs::exists(folder + "/samples.json"))
     throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
   const Json json = read_json(folder + "/samples.json");
-  std::vector<StageEstimate> estimates;
   Json costs = {{"size", json.at("size")}};
+  const Json planned = read_json(folder + "/planned.json");
+  std::vector<StageEstimate> estimates{{"scene-plan", 1, planned.at("cpu_s")}};
+  double commands = 0;
   for (const StageInfo& stage : kStages) {
     const std::string name(stage.name);
     if (!json.at("runs").contains(name)) continue;
@@ -159,7 +185,12 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
                          json.value("passing", Json::object()).contains(name)});
     costs["stages"][std::string(stage.folder)] = {estimates.back().cpu_s,
                                                   std::max(b->memory, whole(a->memory, b->memory))};
+    commands += runs[0];
   }
+  const double rest = rest_of(folder, json);
+  estimates.push_back({"make, previews, sheet: a command", commands, rest});
+  costs["plan"] = planned.at("cpu_s");
+  costs["rest"] = rest;
   std::ofstream(folder + "/costs.json") << costs;
   return estimates;
 }
