@@ -10,6 +10,7 @@ Answers each by a line: {"cpu_s": ...} of the job. The importer is Blender's own
 the one given. defaults: Blender's clamping, bounces and filter; else none is clamped and bounces are as many as ours.
 """
 
+import math
 import sys
 from pathlib import Path
 
@@ -54,6 +55,7 @@ def load(job):
         picture.image.colorspace_settings.name = "Linear Rec.709"
         link(picture.outputs["Color"], background.inputs["Color"])
         turn, coordinates = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
+        turn.inputs["Rotation"].default_value[2] = math.pi / 2  # our maps have their middle at glTF's +Z, Blender's -Y; Cycles' at +X
         link(coordinates.outputs["Generated"], turn.inputs["Vector"])
         link(turn.outputs["Vector"], picture.inputs["Vector"])
     if job.get("smoke"):
