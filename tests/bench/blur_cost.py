@@ -6,7 +6,8 @@
 Frames of 320x180 of two seeds or more at several pixel errors, the sides alternating. By side and pixel error: CPU seconds of
 the frame's commands, noise between seeds in 8-bit sRGB codes of one exposure for both sides, and, where OUT has halves of
 a path-traced reference (OUT/NAME.sharp_a.exr, _b.exr, OUT/NAME.blurred_a.exr, _b.exr), the error against them. Then CPU
-seconds at equal noise, between the points along straight lines of logarithms. Frames that exist are used again.
+seconds at equal error, else at equal noise, between the points along straight lines of logarithms. Frames that exist are
+used again.
 """
 
 import argparse
@@ -57,12 +58,12 @@ def mean_square(one, two):
     return statistics.fmean((x - y) ** 2 for pair in zip(one, two) for x, y in zip(*pair))
 
 
-def cost_at(points, noise):
-    """CPU seconds [s] of a side at a noise, along the logarithms of (noise, CPU seconds)."""
-    points = sorted((math.log(n), math.log(cpu)) for n, cpu in points)
-    i = max(0, min(len(points) - 2, sum(n <= math.log(noise) for n, _ in points) - 1))
-    (n0, c0), (n1, c1) = points[i], points[i + 1]
-    return math.exp(c0 + (math.log(noise) - n0) * (c1 - c0) / (n1 - n0))
+def cost_at(points, codes):
+    """CPU seconds [s] of a side at an error or noise [codes], along the logarithms of (codes, CPU seconds)."""
+    points = sorted((math.log(c), math.log(cpu)) for c, cpu in points)
+    i = max(0, min(len(points) - 2, sum(c <= math.log(codes) for c, _ in points) - 1))
+    (x0, y0), (x1, y1) = points[i], points[i + 1]
+    return math.exp(y0 + (math.log(codes) - x0) * (y1 - y0) / (x1 - x0))
 
 
 def main():
@@ -79,6 +80,8 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     seeds = options.seeds.split(",")
     for name in options.scenes.split(","):
+        halves = {side: [options.out / f"{name}.{side}_{half}.exr" for half in "ab"] for side in SIDES}
+        judged = all(file.exists() for files in halves.values() for file in files)
         points, exposure = {side: [] for side in SIDES}, None
         for error in options.errors.split(","):
             found = {side: [] for side in SIDES}
@@ -89,17 +92,16 @@ def main():
                 codes = [exposure.codes(planes) for planes, _ in frames]
                 noise = math.sqrt(statistics.fmean(mean_square(*pair) / 2 for pair in itertools.combinations(codes, 2)))
                 cpu = statistics.fmean(cost for _, cost in frames)
-                halves = [options.out / f"{name}.{side}_{half}.exr" for half in "ab"]
-                beside = ""
-                if all(half.exists() for half in halves):
-                    truth = Seen(*(pixels.planes(exr.read(half)) for half in halves))
+                off = noise
+                if judged:
+                    truth = Seen(*(pixels.planes(exr.read(file)) for file in halves[side]))
                     off = statistics.fmean(truth.error(planes) for planes, _ in frames)
-                    beside = f", error against paths {off:.2f}"
-                points[side].append((noise, cpu))
+                points[side].append((off, cpu))
+                beside = f", error {off:.2f}" if judged else ""
                 print(f"{name} {side:8} {error:6} CPU {cpu:6.2f} s, noise {noise:.2f} codes{beside}", flush=True)
-        for noise, cpu in points["sharp"]:
-            other = cost_at(points["blurred"], noise)
-            print(f"{name} at {noise:.2f} codes: sharp {cpu:.2f} s, blurred {other:.2f} s, {other / cpu:.2f} times")
+        for codes, cpu in points["sharp"]:
+            other = cost_at(points["blurred"], codes)
+            print(f"{name} at {codes:.2f} codes: sharp {cpu:.2f} s, blurred {other:.2f} s, {other / cpu:.2f} times")
 
 
 if __name__ == "__main__":
