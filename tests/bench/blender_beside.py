@@ -3,7 +3,7 @@
     python3 tests/bench/blender_beside.py SHOT.blend BLENDER OUT FRAMES -- the make line of the exporter
 
 BLENDER: Python of a virtual environment with bpy, or a program. The line is run with SIZE=320x180, FRAMES and BIN put behind it. Cycles: 128
-samples and OIDN, without motion blur and depth of field, which we do not render; --caustics as words of FRAMES' end (1,18:caustics) keep its
+samples and OIDN, with the shot's motion blur and depth of field, as ours; --caustics as words of FRAMES' end (1,18:caustics) keep its
 light through glass. SIZE=192x108 in the environment: a smaller picture. KEEP_CYCLES=1, KEEP_OURS=1: what is there is not rendered again. Written: OUT/F_cycles.exr, OUT/ours/frames/*.exr, OUT/F.png: ours above, Cycles below, at one exposure.
 """
 
@@ -26,10 +26,8 @@ scene, caustics = bpy.context.scene, "caustics" in frames
 cycles, render = scene.cycles, scene.render
 render.engine, cycles.device = "CYCLES", "CPU"
 render.resolution_x, render.resolution_y, render.resolution_percentage = int(width), int(height), 100
-render.use_motion_blur = render.use_compositing = render.use_sequencer = False
+render.use_compositing = render.use_sequencer = False
 render.film_transparent = False
-for camera in bpy.data.cameras:
-    camera.dof.use_dof = False
 cycles.samples, cycles.denoiser, cycles.seed = abs(int(samples)), "OPENIMAGEDENOISE", int(seed)
 cycles.use_denoising, cycles.use_adaptive_sampling = int(samples) > 0, False
 cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
