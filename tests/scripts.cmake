@@ -61,7 +61,7 @@ endforeach()
 add_test(NAME pipelines.every_processor COMMAND python3 -B tests/pipelines/every_processor.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.every_processor PROPERTIES TIMEOUT 1200 SKIP_RETURN_CODE 77 COST 1000)
-set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes PROPERTIES TIMEOUT 600)
+set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes PROPERTIES TIMEOUT 1500)
 add_test(NAME pipelines.interrupted COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan>
          --only frames,lost,again,cut,late,killed,stopped,disk
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -13,7 +13,6 @@ namespace tempolux {
 namespace {
 
 constexpr double kLeastOpeningGain = 1.25;  ///< in the variance; as kLeastGain of the shares of lights
-constexpr std::size_t kFewestStarts = 64;   ///< that choose the spheres; two for each sphere
 constexpr std::size_t kMostStarts = 1024;   ///< that choose, and that measure: bounds the time of the search
 constexpr int kLevels = 6;                  ///< of lattices: the smallest cells have 1/64 of the scene's radius
 
@@ -31,11 +30,12 @@ std::vector<DistantStart> some_of(std::span<const DistantStart> starts, std::siz
   return some;
 }
 
+using StartsOfCells = std::map<LatticeCell, std::vector<std::size_t>>;
+
 /// Finds the cells that the lines of the starts pass inside the scene's sphere, and lists the starts of each cell.
 /// `centre`: of the sphere, world space, m. `radius`: m.
-std::map<LatticeCell, std::vector<std::size_t>> cells_passed(std::span<const DistantStart> starts, Vec3d centre,
-                                                             double radius) {
-  std::map<LatticeCell, std::vector<std::size_t>> cells;
+StartsOfCells cells_passed(std::span<const DistantStart> starts, Vec3d centre, double radius) {
+  StartsOfCells cells;
   const int top = std::ilogb(radius) - 1;
   for (int level = top; level > top - kLevels; --level) {
     const double step = std::ldexp(0.5, level);
@@ -54,10 +54,9 @@ std::map<LatticeCell, std::vector<std::size_t>> cells_passed(std::span<const Dis
   return cells;
 }
 
-/// The chosen spheres with their weights.
-std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, Vec3d centre, double radius) {
-  const auto cells = cells_passed(starts, centre, radius);
-  const std::size_t fewest = starts.size() / formats::kMaxViewSpheres;
+/// The chosen spheres with their weights, around cells that hold more than `fewest` starts.
+std::vector<formats::ViewSphere> choose(std::span<const DistantStart> starts, const StartsOfCells& cells,
+                                        std::size_t fewest) {
   std::vector<bool> held(starts.size());
   std::vector<formats::ViewSphere> spheres;
   double whole = 0;
@@ -102,10 +101,16 @@ double variance_with(const Aim& aim, std::span<const DistantStart> starts, Vec3d
 std::vector<formats::ViewSphere> find_openings(std::span<const DistantStart> starts, const EmissionTable& table,
                                                Vec3d origin) {
   const std::vector<DistantStart> choosing = some_of(starts, 0), measuring = some_of(starts, 1);
-  if (choosing.size() < kFewestStarts || !(table.sphere_radius > 0)) return {};
-  std::vector<formats::ViewSphere> openings = choose(choosing, table.sphere_centre + origin, table.sphere_radius);
-  const Aim aim(table.aim, spheres_in_scene(openings, origin), Vec3(table.sphere_centre), table.sphere_radius);
-  if (openings.empty() || !(kLeastOpeningGain * variance_with(aim, measuring, origin) < 1)) openings.clear();
+  if (choosing.size() < kFewestStarts / 2 || !(table.sphere_radius > 0)) return {};
+  const StartsOfCells cells = cells_passed(choosing, table.sphere_centre + origin, table.sphere_radius);
+  std::vector<formats::ViewSphere> openings;
+  double least = 1 / kLeastOpeningGain;
+  for (std::size_t cells_wanted = formats::kMaxViewSpheres; cells_wanted > 0; cells_wanted /= 2) {
+    std::vector<formats::ViewSphere> chosen = choose(choosing, cells, choosing.size() / (cells_wanted + 1));
+    if (chosen.empty()) continue;
+    const Aim aim(table.aim, spheres_in_scene(chosen, origin), Vec3(table.sphere_centre), table.sphere_radius);
+    if (const double v = variance_with(aim, measuring, origin); v < least) least = v, openings = std::move(chosen);
+  }
   return openings;
 }
 

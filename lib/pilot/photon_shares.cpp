@@ -20,7 +20,8 @@ namespace {
 constexpr double kLeastGain = 1.25;
 /// Paths of each light in the pilot, at least.
 constexpr std::uint64_t kLeastPathsOfLight = 1024;
-/// A pilot with fewer photons in all cells than this is repeated with four times the paths, up to kMostTimes the paths.
+/// A pilot with fewer photons in all cells than this, or with some paths of sun and sky but too few to find openings,
+/// is repeated with four times the paths, up to kMostTimes the paths.
 constexpr std::size_t kFewestPhotons = 1000;
 constexpr std::uint64_t kMostTimes = 16;
 
@@ -122,6 +123,11 @@ struct Arrivals {
   std::vector<DistantPhoton> distant;
 
   explicit Arrivals(std::size_t size) : flux(size), square(size) {}
+  bool too_few() const {
+    std::size_t starts = 0;  // paths of sun and sky; the photons of a path follow each other
+    for (std::size_t i = 0; i < distant.size(); ++i) starts += i == 0 || distant[i].path != distant[i - 1].path;
+    return photons < kFewestPhotons || (starts > 0 && starts < kFewestStarts);
+  }
   void add(std::size_t at, double of_photon) {
     flux[at] += of_photon;
     square[at] += of_photon * of_photon;
@@ -225,7 +231,7 @@ void SharePilot::look(const Tracer& tracer, const EmissionTable& table) {
   options.store_volume = false;
   options.photon_count = std::max(kPilotPaths, kLeastPathsOfLight * lights.size());
   Arrivals all(0);
-  for (std::uint64_t times = 1; times <= kMostTimes && all.photons < kFewestPhotons; times *= 4) {
+  for (std::uint64_t times = 1; times <= kMostTimes && all.too_few(); times *= 4) {
     all = arrivals(PhotonTracer(tracer, emitters, options), emitters, tracer, light_of_slot, seen);
     options.photon_count *= 4;
   }

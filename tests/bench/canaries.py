@@ -35,6 +35,7 @@ S1, S2, S3 = (f"pipelines/scenes/{name}.glb" for name in ("S1_cornell", "S2_corn
 # By make: variables of Makefile.example.
 MADE = {
     "still": {"SCENE": S2, "FRAMES": "10", "INDIRECT": "records", **SMALL},
+    "day": {"SCENE": "day.gltf", "FRAMES": "0", "SKY": "1,1.2,1.5", "INDIRECT": "records", "METHOD": "frames", **SMALL},
     "sky": {"SCENE": S1, "FRAMES": "0", "SKY": "1,1,1", "METHOD": "frames", **SMALL},
     "walk": {
         "SCENE": "pan.glb",
@@ -143,6 +144,9 @@ def inputs(bench, name, folder):
                 variables["SCENE"],
             ]
         )
+    if variables["SCENE"] == "day.gltf":
+        variables["SCENE"] = str(folder / "day.gltf")
+        bench.run(["python3", "-B", Path(__file__).with_name("day_room.py"), variables["SCENE"]])
     if "VOLUME" in variables:
         variables["VOLUME"] = str(folder / variables["VOLUME"])
         make_vdb = bench.programs.parent / "make-vdb"

@@ -229,7 +229,8 @@ PAPERS = [
     ("textures", "B: textures and times", "S6", 150, ("smoke", "preview"), paper_rows.textures),
 ]
 
-ALL = ("still", "sky", "walk", "localised", "temporal", "split", "preview", "smoke", "filter", "paths", "photons")
+DAY = ("S8", "furnished_day", "evening_shot")   # rooms with windows
+ALL = ("still", "sky", "day", "walk", "localised", "temporal", "split", "preview", "smoke", "filter", "paths", "photons")
 PARTS = [
     *(
         Part(f"paper-{name}", "papers", judges, where, cost, canary, run)
@@ -245,7 +246,7 @@ PARTS = [
             f"{name}: error against run time beside other renderers",
             name,
             1500,
-            ("still", "paths"),
+            ("still", "paths") + ("day",) * (name in DAY),
             lambda bench, name=name: curves.measure(bench, name),
         )
         for name in cases.CURVES
@@ -290,7 +291,7 @@ PARTS = [
             f"{name}: steadiness beside Cycles with OIDN",
             name,
             400,
-            ("still", "filter"),
+            ("still", "filter") + ("day",) * (name in DAY),
             lambda bench, name=name: steady_rows.measure(bench, name),
         )
         for name in steady_rows.SCENES

@@ -223,7 +223,7 @@ def main():
                 if inject.__name__ == "full_disk" and not mounted:
                     print(f"skipped: {title}: no disk can be mounted")
                     continue
-                for _ in range(3):   # a short command may end before it is seen
+                for _ in range(10):   # a short command may end before it is seen
                     wrong = fault(cluster, shot, inject, way, stage, rng)
                     cluster.mend()
                     if wrong != ["missed"]:

@@ -58,6 +58,23 @@ TEST(FindOpenings, FindsAWindow) {
   EXPECT_LT(inverse / double(starts.size()), 4.0 / 38);
 }
 
+/// The same by 180 starts, half of which choose: cells that must hold 1 of 33 starts follow the random places of the
+/// starts and leave parts of the window uncovered, where paths then count 4 times too little. Wider cells are chosen.
+/// 18 of 20 sets of starts gain 2 and more. Seen to fail: cells of 1 in 33 alone (8 sets).
+TEST(FindOpenings, FindsAWindowByFewStarts) {
+  const EmissionTable table = table_of_scene();
+  const std::vector<DistantStart> all = through_window({2, 0.3f, -0.7f}, 0.5f, 20 * 180);
+  int gained = 0;
+  for (std::size_t set = 0; set < 20; ++set) {
+    const auto openings = find_openings(std::span(all).subspan(180 * set, 180), table, kOrigin);
+    const Aim aim({}, spheres_in_scene(openings, kOrigin), {}, kRadius);
+    double inverse = 0;
+    for (const DistantStart& start : all) inverse += 1 / aim.density(Vec3(start.origin - kOrigin), Vec3(start.travel));
+    gained += inverse / double(all.size()) < 0.5;
+  }
+  EXPECT_GE(gained, 18);
+}
+
 /// Light from everywhere to everywhere has no opening.
 TEST(FindOpenings, FindsNoneInTheOpen) {
   std::vector<DistantStart> starts;
