@@ -149,9 +149,9 @@ list() {
 cost() { sed -n "s/.*\"$1\":\([^,}]*\).*/\1/p" state/costs.json; }
 
 # First scene-plan runs. Then a job starts as soon as a place is free and what it reads is there, in the order of the
-# list, as in a queue. Commands take their CPU seconds divided by their
-# threads; make takes what it takes with one. The last job reads each frame three times: for the digest, the sheet and
-# the account, .75 us a pixel (RGBA, Z, N, id; measured at 1280x720).
+# list, as in a queue. A command takes its CPU seconds divided by its threads. Make and shells have one thread. The last
+# job reads each frame three times, once for the digest, the sheet and the account each, and needs .75 us a pixel for
+# all three (RGBA, Z, N, id; measured at 1280x720).
 forecast() {
   all=$(MEASURED_ONLY=yes REST=$(cost rest) list) PLANNING=$(cost plan)
   for nodes in $(echo "$NODES" | tr , ' '); do echo "$all" | forecast_on "$nodes"; done

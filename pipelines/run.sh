@@ -109,7 +109,7 @@ estimate() {   # makes the first picture at two small sizes; prints options of s
     --stats "$aside/planned.json" || exit
   wanted=
   spend; before=$spent
-  # The samples print their progress for nobody: it costs time, too. Make runs inside $aside.
+  # Both samples write their progress to a file that nobody reads, because printing costs time in a run, too.
   for plan in small.mk large.mk; do
     : > "$aside/said"
     PROGRESS=said TOTAL=0 WEIGHT=0 BEGAN=0 PLAN="$plan" ending makes_sample > /dev/null || exit

@@ -25,8 +25,8 @@ namespace tempolux {
 /// Coupled Specular-Matte BRDF Model", EG 2001. If a lobe of albedo A lies above the Lambert lobe, the value of the
 /// Lambert lobe is multiplied by
 ///     c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean).
-/// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. Of a surface that
-/// is metal in part, A is the albedo of the dielectric alone: the metal lies beside the Lambert lobe, not above it.
+/// A is the albedo of the largest channel, and A_mean its cosine-weighted mean over the hemisphere. If a
+/// surface is metal in part, A is the albedo of the dielectric alone, because the metal lies beside the Lambert lobe.
 /// With several lobes above, c(w) is the product of their factors, and
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi).
 /// c(wi) does not depend on wo, and c(wo) does not depend on wi. So records, points and photons can store light that is
@@ -41,7 +41,8 @@ namespace tempolux {
 /// of kMirrorRoughness under a Mirror (opaque_lobes.h), with
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic).
-/// It is the mixture of a dielectric and a metal by `metallic` (PartMetal).
+/// If metallic lies between 0 and 1, the material is the mixture of a dielectric and a metal with these shares
+/// (PartMetal).
 /// A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1. KHR_materials_clearcoat adds a Gloss or a Mirror
 /// above these, with F0 = 0.04 clearcoat and F90 = clearcoat. A coat with a normal of its own is a Coat (coat.h).
 /// Between the two lies the sheen of KHR_materials_sheen (sheen.h). KHR_materials_anisotropy makes the Gloss wider

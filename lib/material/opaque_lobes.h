@@ -49,8 +49,9 @@ struct Schlick {
   }
 };
 
-/// Schlick's Fresnel term of a surface that is metal in part: the mixture of a dielectric's and a metal's. The Lambert
-/// lobe lies below the dielectric alone, and the metal beside it (glTF 2.0, appendix B).
+/// Schlick's Fresnel term of a surface that is a dielectric in one part and a metal in the other. F0 and F90 are the
+/// means of both. Only the dielectric lies above the Lambert lobe; the metal lies beside this lobe (glTF 2.0, appendix
+/// B).
 struct PartMetal : Schlick {
   Schlick dielectric, metal;
   float metallic;  ///< share of the metal [1]

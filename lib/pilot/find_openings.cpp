@@ -33,7 +33,7 @@ std::vector<DistantStart> some_of(std::span<const DistantStart> starts, std::siz
 using StartsOfCells = std::map<LatticeCell, std::vector<std::size_t>>;
 
 /// Finds the cells that the lines of the starts pass inside the scene's sphere, and lists the starts of each cell.
-/// `centre`: of the sphere, world space, m. `radius`: m.
+/// `centre` is the centre of this sphere in world space, `radius` its radius, both in m.
 StartsOfCells cells_passed(std::span<const DistantStart> starts, Vec3d centre, double radius) {
   StartsOfCells cells;
   const int top = std::ilogb(radius) - 1;

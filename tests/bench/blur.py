@@ -58,15 +58,23 @@ def blurred(options, file, kind, focus):
     return out
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def options_of(page, scenes, **further):
+    """Options of this script and of blur_cost.py. further: {name: (default, help)}."""
+    parser = argparse.ArgumentParser(description=page, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=Path, default=TOP / "build" / "release" / "bin", help="folder of the tools")
     parser.add_argument("--out", type=Path, required=True, help="folder for frames; those that exist are used again")
     parser.add_argument("--shared", type=Path, default=filter_few.SHARED, help="folder of the scenes")
-    parser.add_argument("--scenes", default="S2,S4,evening_shot")
+    parser.add_argument("--scenes", default=scenes)
     parser.add_argument("--size", default="320x180")
+    for name, (default, words) in further.items():
+        parser.add_argument(f"--{name}", default=default, help=words)
     options = parser.parse_args()
     options.bin, options.out, options.shared = (p.resolve() for p in (options.bin, options.out, options.shared))
+    return options
+
+
+def main():
+    options = options_of(__doc__, "S2,S4,evening_shot")
     for name in options.scenes.split(","):
         sharp = [rendered(options, name, seed, "sharp", {}) for seed in SEEDS]
         depths = [z for z in exr.read(sharp[0]).channels["Z"] if math.isfinite(z)]

@@ -10,7 +10,6 @@ seconds at equal error, else at equal noise, between the points along straight l
 used again.
 """
 
-import argparse
 import itertools
 import json
 import math
@@ -21,6 +20,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
+import blur
 import exr
 import filter_few
 import pipeline
@@ -67,16 +67,7 @@ def cost_at(points, codes):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--bin", type=Path, default=TOP / "build" / "release" / "bin", help="folder of the tools")
-    parser.add_argument("--out", type=Path, required=True, help="folder for frames; those that exist are used again")
-    parser.add_argument("--shared", type=Path, default=filter_few.SHARED, help="folder of the scenes")
-    parser.add_argument("--scenes", default="S2,S8")
-    parser.add_argument("--errors", default="0.032,0.016,0.008", help="pixel errors; final has 0.016")
-    parser.add_argument("--seeds", default="1,2")
-    parser.add_argument("--size", default="320x180")
-    options = parser.parse_args()
-    options.bin, options.out, options.shared = (p.resolve() for p in (options.bin, options.out, options.shared))
+    options = blur.options_of(__doc__, "S2,S8", errors=("0.032,0.016,0.008", "pixel errors; final has 0.016"), seeds=("1,2", "seeds of a frame"))
     options.out.mkdir(parents=True, exist_ok=True)
     seeds = options.seeds.split(",")
     for name in options.scenes.split(","):

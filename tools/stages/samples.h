@@ -18,9 +18,9 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
 /// has a fixed part (start, loading the scene) and the work of its phases (StageInfo::work). Work and bytes per command
 /// are extrapolated to the full picture width by a power law through the means of the two sizes, and multiplied by the
 /// ratios of photons, rays and cameras. costs.json gets CPU time and memory of a command of each stage, which a plan in
-/// whose state/ it lies takes for its own (PlanFolder::costs). A stage without statistics is left out. The file
-/// planned.json has the statistics of scene-plan, and `made` the CPU seconds of all processes that made both samples.
-/// Throws InputError if the folder does not hold the samples.
+/// whose state/ it lies takes for its own (PlanFolder::costs). A stage without statistics is left out.
+/// The file planned.json holds the statistics of scene-plan. The file `made` holds the CPU seconds [s] of all processes
+/// that made the two samples. Throws InputError if the folder does not hold the samples.
 std::vector<StageEstimate> estimate_from(const std::string& folder);
 
 }  // namespace tempolux::tools
