@@ -38,15 +38,27 @@ def render(program, image, scene, frame, size, samples, seed, sky="0,0,0", light
     return exr.read(image), after.children_user - before.children_user + after.children_system - before.children_system
 
 
-def inner_means(ours, theirs, width):
-    """{object: (pixels, our mean, theirs, error of the ratio of both by their scatter)} of pixels whose four neighbours show the same object."""
-    ids, by_object = ours.channels["id.object"], {}
-    grey = [[sum(v) / 3 for v in zip(*(image.channels[c] for c in "RGB"))] for image in (ours, theirs)]
+def inner_pixels(ids, width):
+    """{object: indices of the pixels whose four neighbours show the same object}"""
+    found = {}
     for n in range(width, len(ids) - width):
         if all(ids[n + step] == ids[n] for step in (-1, 1, -width, width)):
-            by_object.setdefault(int(ids[n]), []).append((grey[0][n], grey[1][n]))
+            found.setdefault(int(ids[n]), []).append(n)
+    return found
+
+
+def object_names(image):
+    """{number as text: name} of the objects in our picture."""
+    text = image.attributes.get("tempolux:objects", b"").decode(errors="replace")
+    return dict(line.split(" ", 1) for line in text.splitlines() if " " in line)
+
+
+def inner_means(ours, theirs, width):
+    """{object: (pixels, our mean, theirs, error of the ratio of both by their scatter)} of pixels whose four neighbours show the same object."""
+    grey = [[sum(v) / 3 for v in zip(*(image.channels[c] for c in "RGB"))] for image in (ours, theirs)]
     means = {}
-    for number, pairs in by_object.items():
+    for number, places in inner_pixels(ours.channels["id.object"], width).items():
+        pairs = [(grey[0][n], grey[1][n]) for n in places]
         a, b = (math.fsum(pair[k] for pair in pairs) for k in (0, 1))
         if a > 0 and b > 0:
             scatter = math.sqrt(math.fsum((y - x * b / a) ** 2 for x, y in pairs)) / b
@@ -70,7 +82,7 @@ def walls(bench):
             raise Missing((done.stdout + done.stderr).strip().splitlines()[-1])
     theirs, _ = render(program, folder / "cycles.exr", blend, 12, size, 144, 1)
     ours = exr.read(image)
-    names = dict(line.split(" ", 1) for line in ours.attributes.get("tempolux:objects", b"").decode(errors="replace").splitlines() if " " in line)
+    names = object_names(ours)
     found = inner_means(ours, theirs, 160)
     rows, met = [], True
     for number, (pixels_seen, a, b, error) in sorted(found.items(), key=lambda item: -item[1][0])[:7]:

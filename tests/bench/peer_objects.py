@@ -19,16 +19,16 @@ from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr  # noqa: E402
+from cycles import inner_pixels, object_names  # noqa: E402
 from peer_renderers import Peer  # noqa: E402
 
 
 def means(ids, width, planes):
     """{object: (pixels, mean of each plane)}"""
-    found = {}
-    for n in range(width, len(ids) - width):
-        if all(ids[n + step] == ids[n] for step in (-1, 1, -width, width)):
-            found.setdefault(int(ids[n]), []).append(n)
-    return {number: (len(places), [statistics.fmean(plane[n] for n in places) for plane in planes]) for number, places in found.items()}
+    return {
+        number: (len(places), [statistics.fmean(plane[n] for n in places) for plane in planes])
+        for number, places in inner_pixels(ids, width).items()
+    }
 
 
 def alike(scene, only, out):
@@ -92,7 +92,7 @@ def main():
         cycles.ask({"frame": wish.frame, "samples": wish.spp, "seed": seed, "denoise": False, "output": str(theirs)})
         picture = exr.read(ours)
         ids = picture.channels["id.object"]
-        names = dict(line.split(" ", 1) for line in picture.attributes.get("tempolux:objects", b"").decode(errors="replace").splitlines() if " " in line)
+        names = object_names(picture)
         for side, file in (("ours", ours), ("Cycles", theirs)):
             channels = exr.read(file).channels
             runs[side].append(means(ids, picture.width, [channels[c] for c in "RGB"]))
