@@ -13,6 +13,9 @@ namespace {
 
 /// Least extent of a grid in height and in azimuth [rad]: a thousandth of a picture's usual angle.
 constexpr double kLeastExtent = 1e-3;
+/// Part of the extent of its hits that a grid of a search adds on each side, and the uniform part of its density.
+constexpr double kSearchMargin = 0.25, kSearchUniform = 0.5;
+
 constexpr int kRows = SkyGuide::kRows, kColumns = SkyGuide::kColumns, kCells = kRows * kColumns;
 
 /// Azimuth of a direction, in [0, 2 pi).
@@ -73,14 +76,18 @@ struct SkyGuide::Builder {
   SkyGuide& guide;
   std::span<const Place> places;
   int rays;
+  Use use;
 
+  std::size_t least_hits() const { return use == Use::light ? kLeastHits : kSearchHits; }
   std::uint32_t build(std::span<std::uint32_t> of, std::span<Hit> hits) const;
   std::uint32_t leaf(std::span<const std::uint32_t> of, std::span<const Hit> hits) const;
   double sum_of_squares(const Grid& grid, std::span<const Hit> hits) const;
   double lamps_at(std::span<const std::uint32_t> of) const;
 };
 
-SkyGuide::Grid::Grid(std::span<const Hit> hits) {
+SkyGuide::Grid::Grid(std::span<const Hit> hits, Use use) {
+  const double margin = use == Use::search ? kSearchMargin : 0,
+               uniform = use == Use::search ? kSearchUniform : kUnguidedShare;
   double low = 1, high = -1;
   std::vector<double> turns;
   for (const Hit& hit : hits) {
@@ -90,12 +97,13 @@ SkyGuide::Grid::Grid(std::span<const Hit> hits) {
   }
   const auto [first, gap] = widest_gap(turns);
   // A cell more on each side: the hits of a window lie within its edges. kLeastExtent keeps cells of equal hits apart.
-  height_ = std::max(high - low, kLeastExtent) * kRows / (kRows - 2);
-  top_ = std::min(1.0, high + height_ / kRows);
+  const double wider = 1 + 2 * margin, tall = std::max(high - low, kLeastExtent),
+               wide = std::max(2 * kPiD - gap, kLeastExtent);
+  height_ = tall * wider * kRows / (kRows - 2);
+  top_ = std::min(1.0, high + tall * margin + height_ / kRows);
   height_ = std::min(height_, top_ + 1);
-  const double extent = std::max(2 * kPiD - gap, kLeastExtent);
-  turn_ = std::min(extent * kColumns / (kColumns - 2), 2 * kPiD);
-  first_ = first - (turn_ - extent) / 2;
+  turn_ = std::min(wide * wider * kColumns / (kColumns - 2), 2 * kPiD);
+  first_ = first - (turn_ - wide) / 2;
   if (first_ < 0) first_ += 2 * kPiD;
 
   std::vector<double> weights(kCells, 0.0);
@@ -110,6 +118,7 @@ SkyGuide::Grid::Grid(std::span<const Hit> hits) {
       }
     sum += 16 * double(hits[k].weight);
   }
+  for (double& weight : weights) weight = (1 - uniform) * weight + uniform * sum / kCells;
 
   double below = 0;
   for (int r = 0; r < kRows; ++r) {
@@ -160,9 +169,9 @@ std::uint32_t SkyGuide::Builder::leaf(std::span<const std::uint32_t> of, std::sp
   guide.nodes_.push_back({-1, 0, std::uint32_t(guide.parts_.size()), 0});
   Part part;
   if (sent > 0) part.irradiance = kPiD * weight / sent;
-  if (hits.size() >= kLeastHits && seen <= kMostSeen * sent) {
+  if (hits.size() >= least_hits() && seen <= kMostSeen * sent) {
     part.grid = std::uint32_t(guide.grids_.size());
-    part.rms = std::sqrt(sum_of_squares(guide.grids_.emplace_back(hits), hits) / sent);
+    part.rms = std::sqrt(sum_of_squares(guide.grids_.emplace_back(hits, use), hits) / sent);
   }
   part.lamps = lamps_at(of);
   guide.parts_.push_back(part);
@@ -171,7 +180,7 @@ std::uint32_t SkyGuide::Builder::leaf(std::span<const std::uint32_t> of, std::sp
 
 /// Adds the node of these places and their hits, and all nodes below. Returns the node's number.
 std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hit> hits) const {
-  if (hits.size() < 2 * kLeastHits) return leaf(of, hits);
+  if (hits.size() < 2 * least_hits()) return leaf(of, hits);
   const auto position = [&](const Hit& hit) { return places[hit.place].position; };
   Vec3 low = position(hits[0]), high = low;
   for (const Hit& hit : hits) {
@@ -188,7 +197,7 @@ std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hi
   const auto upper_hits =
       std::stable_partition(hits.begin(), hits.end(), [&](const Hit& hit) { return position(hit)[axis] < split; });
   const auto below = std::size_t(upper_hits - hits.begin());
-  if (below < kLeastHits / 2) return leaf(of, hits);  // many places have the same coordinate
+  if (below < least_hits() / 2) return leaf(of, hits);  // many places have the same coordinate
   const auto upper_places =
       std::stable_partition(of.begin(), of.end(), [&](std::uint32_t i) { return places[i].position[axis] < split; });
   const auto places_below = std::size_t(upper_places - of.begin());
@@ -200,12 +209,12 @@ std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hi
   return std::uint32_t(number);
 }
 
-SkyGuide::SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int rays) {
+SkyGuide::SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int rays, Use use) {
   std::array<std::vector<std::uint32_t>, 6> places_of;
   std::array<std::vector<Hit>, 6> hits_of;
   for (std::size_t i = 0; i < places.size(); ++i) places_of[side_of(places[i].normal)].push_back(std::uint32_t(i));
   for (const Hit& hit : hits) hits_of[side_of(places[hit.place].normal)].push_back(hit);
-  const Builder builder{*this, places, rays};
+  const Builder builder{*this, places, rays, use};
   for (std::size_t side = 0; side < 6; ++side) root_[side] = builder.build(places_of[side], hits_of[side]);
 }
 

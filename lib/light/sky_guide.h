@@ -16,10 +16,10 @@ namespace tempolux {
 /// Places are divided by the axis that their normal is closest to, then at the median of their hits, along the longest
 /// side of the box around the hits, while each half has kLeastHits. Each part holds the irradiance that its hits
 /// estimate, and a grid of directions. The grid covers the box around the hits' directions in (height, azimuth) with
-/// kRows x kColumns cells of equal solid angle. A cell is drawn by the weight of the hits in and around the cell; a
-/// direction inside the cell is drawn uniformly. A part has no grid if its places see more than kMostSeen of the
-/// environment, because rays of pdf cos / pi then deviate by at most 300 % of their mean; nor if it has fewer than
-/// kLeastHits hits. Derivation and measurements: docs/methods/lights.md.
+/// kRows x kColumns cells of equal solid angle. A cell is drawn by the weight of the hits in and around the cell, and
+/// with a smaller probability uniformly; a direction inside the cell is drawn uniformly. A part has no grid if its
+/// places see more than kMostSeen of the environment, because rays of pdf cos / pi then deviate by at most 300 % of
+/// their mean; nor if it has fewer than kLeastHits hits. Derivation and measurements: docs/methods/lights.md.
 class SkyGuide {
  public:
   struct Place {
@@ -39,14 +39,20 @@ class SkyGuide {
   static constexpr std::size_t kLeastHits = 64;
   static constexpr double kMostSeen = 0.1;
 
+  /// What a guide is for. light: to sample light; a quarter (kUnguidedShare) of a grid's density is uniform. search: to
+  /// send more rays where few hits are known. A search has grids of fewer hits, on each side a quarter wider than the
+  /// box around them, and half uniform, since few hits miss parts of a window.
+  enum class Use : std::uint8_t { light, search };
+  static constexpr std::size_t kSearchHits = 16;  ///< in place of kLeastHits
+
   SkyGuide() = default;
   /// Every place has sent `rays` rays. Hits must be in a fixed order; the guide then depends on nothing else.
-  SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int rays);
+  SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int rays, Use use = Use::light);
 
   /// A piecewise constant pdf over a part of the sphere.
   class Grid {
    public:
-    explicit Grid(std::span<const Hit> hits);
+    explicit Grid(std::span<const Hit> hits, Use use = Use::light);
     /// Draws a unit direction; u1 and u2 are in [0, 1).
     Vec3 sample(double u1, double u2) const;
     /// pdf [1/sr] with which sample() gives `direction` (unit).

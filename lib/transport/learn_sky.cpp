@@ -17,9 +17,15 @@ namespace {
 
 /// Rays of a place: first by the cosine, then as many by what the first ones have found (docs/methods/lights.md).
 constexpr std::uint32_t kRays = 4;
+/// Twice as many first rays, up to kMostRays, if some meet the environment, but too few for a grid on each of six
+/// sides.
+constexpr std::size_t kFewestHits = 6 * SkyGuide::kSearchHits;
+constexpr std::uint32_t kMostRays = 64;
+/// If fewer than one in kFew places has a hit, more rays search. Rooms whose windows have a usual size have more.
+constexpr std::size_t kFew = 16;
 constexpr std::uint64_t kSeed = 0x736b79;
 
-/// Learns at places by two passes of rays (learn_sky).
+/// Learns at places by passes of rays (learn_sky).
 class SkyLearner {
  public:
   SkyLearner(const Tracer& tracer, const Lights& lights, std::span<const SeenPlace> places)
@@ -30,17 +36,32 @@ class SkyLearner {
     });
   }
 
-  std::shared_ptr<const SkyGuide> learn() const {
-    std::vector<SkyGuide::Hit> first = hits_by_cosine(), all;
-    auto guide = std::make_shared<const SkyGuide>(senders_, first, int(kRays));
-    if (!guide->has_grids()) return guide;
-    const std::vector<SkyGuide::Hit> second = hits_by(*guide);
-    weigh_anew(*guide, first);
-    std::ranges::merge(first, second, std::back_inserter(all), {}, &SkyGuide::Hit::place, &SkyGuide::Hit::place);
-    return std::make_shared<const SkyGuide>(senders_, std::move(all), int(2 * kRays));
+  std::shared_ptr<const SkyGuide> learn() {
+    send(nullptr, kRays);
+    while (!hits_.empty() && hits_.size() < kFewestHits && sent() < kMostRays) send(nullptr, sent());
+    if (hits_.size() < places_.size() / kFew) search();
+    else follow(guide_for(SkyGuide::Use::light));
+    return guide_for(SkyGuide::Use::light);
   }
 
  private:
+  /// Sends rays by guides of all hits so far, until there are as many hits as places, or until rays find no more than
+  /// those before.
+  void search() {
+    std::size_t found = 0;
+    for (std::size_t before = hits_.size(); hits_.size() < places_.size(); before = hits_.size()) {
+      if (!follow(guide_for(SkyGuide::Use::search)) || hits_.size() - before <= found) break;
+      found = hits_.size() - before;
+    }
+  }
+
+  /// Sends kRays rays from each place by the guide. False if the guide has no grid.
+  bool follow(std::shared_ptr<const SkyGuide> guide) {
+    if (!guide->has_grids()) return false;
+    send(std::move(guide), kRays);
+    return true;
+  }
+
   /// Measures SkyGuide::Place::lamps by one light sample.
   float lamps_at(const SeenPlace& at, std::uint64_t place) const {
     const PathRandom random(kSeed, place);
@@ -56,72 +77,77 @@ class SkyLearner {
     return unshadowed > 0 ? float(irradiance * irradiance / (unshadowed * unshadowed)) : -1;
   }
 
-  template <class Add>
-  std::vector<SkyGuide::Hit> hits(const Add& add) const {
-    return parallel_found<SkyGuide::Hit>(places_.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& found) {
-      add(places_[i], std::uint32_t(i), found);
-    });
+  /// Rays of every place that are drawn by the grids of a guide, or by the cosine where it has none.
+  struct Pass {
+    std::shared_ptr<const SkyGuide> guide;  ///< nullptr: by the cosine everywhere
+    std::uint32_t rays = 0;
+
+    const SkyGuide::Grid* grid_at(const SeenPlace& from) const {
+      return guide ? guide->grid_of(guide->at(from.surface.position, from.normal)) : nullptr;
+    }
+  };
+
+  std::uint32_t sent() const {
+    std::uint32_t rays = 0;
+    for (const Pass& pass : passes_) rays += pass.rays;
+    return rays;
   }
 
-  /// Appends a ray if it sees the environment. `share`: cos / pi over its pdf.
-  void add(const SeenPlace& from, std::uint32_t place, std::uint32_t ray, Vec3 travel, float share,
-           std::vector<SkyGuide::Hit>& found) const {
-    if (!(dot(travel, from.geometric) > 0)) return;
+  /// Sends `rays` more rays from each place and keeps their hits, in the order of places.
+  void send(std::shared_ptr<const SkyGuide> guide, std::uint32_t rays) {
+    const Pass pass{std::move(guide), rays};
+    const std::uint32_t begin = sent();
+    const std::vector<SkyGuide::Hit> found =
+        parallel_found<SkyGuide::Hit>(places_.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& hits) {
+          const SeenPlace& from = places_[i];
+          const SkyGuide::Grid* const grid = pass.grid_at(from);
+          for (std::uint32_t ray = begin; ray < begin + rays; ++ray) {
+            const Vec2 u = PathRandom(kSeed, i).get2(ray, Purpose::scatter);
+            const Vec3 travel =
+                grid ? grid->sample(double(u.x), double(u.y)) : Frame(from.normal).to_world(sample_hemisphere_cos(u));
+            if (const float radiance = radiance_of(from, i, ray, travel); radiance > 0)
+              hits.push_back({std::uint32_t(i), travel, 1, radiance});
+          }
+        });
+    std::vector<SkyGuide::Hit> all;
+    std::ranges::merge(hits_, found, std::back_inserter(all), {}, &SkyGuide::Hit::place, &SkyGuide::Hit::place);
+    hits_ = std::move(all);
+    passes_.push_back(pass);
+  }
+
+  /// Radiance of the environment that a ray of a place meets, largest channel.
+  float radiance_of(const SeenPlace& from, std::uint64_t place, std::uint32_t ray, Vec3 travel) const {
+    if (!(dot(travel, from.geometric) > 0 && dot(travel, from.normal) > 0)) return 0;
     const Rgb passed =
         transmittance(tracer_, spawn_ray(from.surface, travel), {PathRandom(kSeed, place), ray, way_shadow});
-    const float weight = max_component(passed * lights_.environment(travel)) * share;
-    if (weight > 0) found.push_back({place, travel, share, weight});
+    return max_component(passed * lights_.environment(travel));
   }
 
-  static Vec3 by_cosine(const SeenPlace& from, std::uint32_t place, std::uint32_t ray) {
-    const PathRandom random(kSeed, place);
-    return Frame(from.normal).to_world(sample_hemisphere_cos(random.get2(ray, Purpose::scatter)));
-  }
-
-  std::vector<SkyGuide::Hit> hits_by_cosine() const {
-    return hits([&](const SeenPlace& from, std::uint32_t place, std::vector<SkyGuide::Hit>& found) {
-      for (std::uint32_t i = 0; i < kRays; ++i) add(from, place, i, by_cosine(from, place, i), 1, found);
-    });
-  }
-
-  const SkyGuide::Grid* grid_at(const SkyGuide& guide, const SeenPlace& from) const {
-    return guide.grid_of(guide.at(from.surface.position, from.normal));
-  }
-
-  /// cos / pi over the pdf of both passes together. grid: of the place; null: both passes drew by the cosine.
-  static float share_of(const SkyGuide::Grid* grid, const SeenPlace& from, Vec3 travel) {
-    const double cosine = std::max(0.0f, dot(travel, from.normal)) / kPiD;
-    if (!(cosine > 0)) return 0;
-    return grid ? float(2 * cosine / (cosine + grid->pdf_solid_angle(travel))) : 1;
-  }
-
-  /// The second pass: rays by the grids of the first pass, or by the cosine where there is no grid.
-  std::vector<SkyGuide::Hit> hits_by(const SkyGuide& guide) const {
-    return hits([&](const SeenPlace& from, std::uint32_t place, std::vector<SkyGuide::Hit>& found) {
-      const SkyGuide::Grid* const grid = grid_at(guide, from);
-      const PathRandom random(kSeed, place);
-      for (std::uint32_t i = kRays; i < 2 * kRays; ++i) {
-        const Vec2 u = random.get2(i, Purpose::scatter);
-        const Vec3 travel = grid ? grid->sample(double(u.x), double(u.y)) : by_cosine(from, place, i);
-        add(from, place, i, travel, share_of(grid, from, travel), found);
-      }
-    });
-  }
-
-  /// Gives the hits of the first pass the weights that they have beside the second.
-  void weigh_anew(const SkyGuide& guide, std::vector<SkyGuide::Hit>& first) const {
-    for (SkyGuide::Hit& hit : first) {
+  /// A guide of all hits. Each hit counts with cos / pi over the mean pdf of all rays of its place.
+  std::shared_ptr<const SkyGuide> guide_for(SkyGuide::Use use) const {
+    std::vector<SkyGuide::Hit> weighted = hits_;
+    const double all = sent();
+    parallel_each(weighted.size(), 64, [&](std::size_t i) {
+      SkyGuide::Hit& hit = weighted[i];
       const SeenPlace& from = places_[hit.place];
-      hit.share = share_of(grid_at(guide, from), from, hit.direction);
+      const double cosine = double(dot(hit.direction, from.normal)) / kPiD;
+      double pdf = 0;
+      for (const Pass& pass : passes_) {
+        const SkyGuide::Grid* const grid = pass.grid_at(from);
+        pdf += pass.rays / all * (grid ? grid->pdf_solid_angle(hit.direction) : cosine);
+      }
+      hit.share = float(cosine / pdf);
       hit.weight *= hit.share;
-    }
-    std::erase_if(first, [](const SkyGuide::Hit& hit) { return !(hit.weight > 0); });
+    });
+    return std::make_shared<const SkyGuide>(senders_, std::move(weighted), int(sent()), use);
   }
 
   const Tracer& tracer_;
   const Lights& lights_;
   std::span<const SeenPlace> places_;
   std::vector<SkyGuide::Place> senders_;
+  std::vector<Pass> passes_;
+  std::vector<SkyGuide::Hit> hits_;  ///< in the order of places; weight: radiance, share: 1
 };
 
 }  // namespace
