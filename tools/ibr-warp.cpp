@@ -83,8 +83,9 @@ int main(int argc, char** argv) {
     tool.stats().phase("load");
     const std::vector<tools::LoadedKey> keys = tools::load_keys(tool, options.keys);
     if (keys[0].has_mattes && options.mask.empty())
-      tool.warn(keys[0].file + ": cryptomatte is left out, as shares of a key are not those of another frame; "
-                               "frame-render --mask --base counts it anew");
+      tool.warn(keys[0].file +
+                ": cryptomatte is left out, as shares of a key are not those of another frame; "
+                "frame-render --mask --base counts it anew");
     (options.view.empty() ? tools::warp_frames : tools::warp_view)(tool, options, keys);
     return tools::exit_ok;
   });

@@ -16,9 +16,9 @@
 namespace tempolux {
 namespace {
 
-const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specular",  "direct",   "caustic",
-                                       "indirect", "volume", "Z",        "N",         "P",        "id",
-                                       "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
+const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specular",   "direct",   "caustic",
+                                       "indirect", "volume", "Z",        "N",          "P",        "id",
+                                       "albedo",   "motion", "coverage", "influence",  "variance", "diffuse.variance",
                                        "samples",  "halves", "seen",     "cryptomatte"};
 
 /// Finds a surface point again in another frame, where its surface may have moved or been deformed (same_surfaces). The

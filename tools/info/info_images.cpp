@@ -59,7 +59,8 @@ Facts matte_facts(const Image& image) {
   Facts facts = Facts::array();
   for (const MatteLayer& layer : matte_layers_in(image)) {
     const Facts manifest = Facts::parse(layer.manifest, nullptr, false);
-    facts.push_back({{"layer", layer.name}, {"ranks", layer.ranks}, {"names", manifest.is_object() ? manifest.size() : 0}});
+    facts.push_back(
+        {{"layer", layer.name}, {"ranks", layer.ranks}, {"names", manifest.is_object() ? manifest.size() : 0}});
   }
   return facts;
 }

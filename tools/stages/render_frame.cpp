@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "formats/error.h"
 #include "lib/core/random.h"
@@ -168,7 +169,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                                      input.scene().object_names,
                                      options.channels,
                                      options.exr()};
-  outputs.write(rendered, image, description,
+  outputs.write(rendered, std::move(image), description,
                 before ? KeptPixels{still.anew, before->image(), &still} : KeptPixels{base.mask, base.base});
   tool.stats().end_phase();
   rendered.rays += still.rays;

@@ -37,6 +37,7 @@ TEST(Cryptomatte, NamesHaveTheSpecificationsFloats) {
   EXPECT_EQ(value("m\xc3\xa4"
                   "dchen"),
             6.2361298211599995797e+25f);
+  EXPECT_EQ(value("\xd1\x80\xd0\xb0\xd0\xb2\xd0\xbd\xd0\xb8\xd0\xbd\xd0\xb0"), -1.3192631212399999468e-25f);
   EXPECT_EQ(matte_bits("bunny"), 0x13851a76u);
   EXPECT_EQ(matte_bits("default"), 0x42c9679fu);
   EXPECT_EQ(matte_bits("bunny_porcelain_mat"), 0xb24b26d4u);
@@ -50,8 +51,10 @@ TEST(Cryptomatte, NamesHaveTheSpecificationsFloats) {
 }
 
 TEST(Cryptomatte, EachMatteHasANameOfItsOwn) {
-  const std::vector<std::string> made = matte_names({"Chair", "", "Chair", "Chair#4", "Chair", "a\tb", "object 1"}, "object");
-  EXPECT_EQ(made, (std::vector<std::string>{"Chair", "object 1", "Chair#2", "Chair#4", "Chair#4#4", "a b", "object 1#6"}));
+  const std::vector<std::string> made =
+      matte_names({"Chair", "", "Chair", "Chair#4", "Chair", "a\tb", "object 1"}, "object");
+  EXPECT_EQ(made,
+            (std::vector<std::string>{"Chair", "object 1", "Chair#2", "Chair#4", "Chair#4#4", "a b", "object 1#6"}));
 }
 
 /// Eight mattes in a pixel of 10 samples: the six largest are kept, equal ones by number; a third of 3 samples is
@@ -68,7 +71,8 @@ TEST(Cryptomatte, RanksGoByShareAndThenByNumber) {
   double sum = 0;
   for (const char* layer : {"CryptoObject00", "CryptoObject01", "CryptoObject02"})
     for (const auto& [hash, share] : {std::pair{".R", ".G"}, {".B", ".A"}}) {
-      EXPECT_EQ(std::bit_cast<std::uint32_t>(image.find(layer + std::string(hash))->values[0]), matte_bits(names[rank]));
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(image.find(layer + std::string(hash))->values[0]),
+                matte_bits(names[rank]));
       EXPECT_NEAR(image.find(layer + std::string(share))->values[0], rank == 0 ? 0.3 : 0.1, 1e-7);
       sum += double(image.find(layer + std::string(share))->values[1]);
       ++rank;
@@ -116,16 +120,19 @@ TEST(Cryptomatte, FilesKeepTheBitsAndDropAttributesWithoutChannels) {
   EXPECT_TRUE(read.layers() == std::vector<std::string>{});  // R alone is no layer, and mattes are none
   keep_channels({"R"}, read);
   save_exr(folder / "b.exr", read);
-  for (const auto& [name, value] : load_exr(folder / "b.exr").text) EXPECT_FALSE(name.starts_with("cryptomatte/")) << name;
+  for (const auto& [name, value] : load_exr(folder / "b.exr").text)
+    EXPECT_FALSE(name.starts_with("cryptomatte/")) << name;
 }
 
 TEST(Cryptomatte, ChannelsAreFoundByTheirLayer) {
-  for (const char* name : {"CryptoObject00.R", "CryptoMaterial02.A", "ViewLayer.CryptoAsset01.G", "crypto_object00.red"}) {
+  for (const char* name :
+       {"CryptoObject00.R", "CryptoMaterial02.A", "ViewLayer.CryptoAsset01.G", "crypto_object00.red"}) {
     EXPECT_TRUE(is_matte(name)) << name;
     EXPECT_TRUE(is_in_group(name, "cryptomatte")) << name;
     EXPECT_FALSE(is_colour(name)) << name;
   }
-  for (const char* name : {"R", "direct.R", "Crypto", "CryptoView.Combined.R", "id.object"}) EXPECT_FALSE(is_matte(name)) << name;
+  for (const char* name : {"R", "direct.R", "Crypto", "CryptoView.Combined.R", "id.object"})
+    EXPECT_FALSE(is_matte(name)) << name;
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ struct Stage {
   FrameOptions options;
   RenderedFrame rendered;
 
+  Stage() { maker.add_material({{"name", "Unused"}}); }  // so that a material has another number than its object
+
   int add_square(const char* name, Json node, Json material = Json::object()) {
     material["name"] = std::string(name) + " paint";
     material["emissiveFactor"] = {1, 1, 1};
@@ -196,6 +198,18 @@ TEST(MatteChannels, KeptPixelsHaveMattesAndThreadsDoNotMatter) {
   EXPECT_EQ(share(one, kObjectMattes, "Front", at(20, 10)), 1);
   EXPECT_EQ(digest_of(one), digest_of(three));
   EXPECT_EQ(one.text, three.text);
+}
+
+/// A frame on a base of another moment keeps its own mattes where it keeps the base's colour.
+TEST(MatteChannels, AreNotTakenFromABase) {
+  Image image{1, 1, {}, {}, {}, {}}, base = image;
+  for (const char* name : {"CryptoObject00.G", "Z"}) {
+    image.add(name).values = {1};
+    base.add(name).values = {2};
+  }
+  keep_base_pixels({0}, base, 2, image);
+  EXPECT_EQ(image.find("CryptoObject00.G")->values[0], 1);
+  EXPECT_EQ(image.find("Z")->values[0], 2);
 }
 
 TEST(MatteChannels, WithoutTheGroupThereAreNone) {
