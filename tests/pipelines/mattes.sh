@@ -12,17 +12,19 @@ run() {
   make -f Makefile.example --no-print-directory demo BIN="$bin" SIZE=64x36 PHOTONS=50k SCENE=$scene "$@" > "$work/log" 2>&1 ||
     { cat "$work/log"; exit 1; }
 }
-good() {   # good FOLDER: all of its frames have mattes
+good() {   # good FOLDER NAME: all of its frames have mattes, and this object is seen
   for frame in "$1"/frames/*.exr; do
     python3 tests/formats/read_mattes.py "$frame" --alpha 1e-6 > "$work/seen" 2>&1 || bad "$frame: $(tail -1 "$work/seen")"
-    grep -q 'CryptoObject ee3a3eba .* MovingBox$' "$work/seen" || bad "$frame: $(cat "$work/seen")"
+    grep -q "CryptoObject .* $2\$" "$work/seen" || bad "$frame: $(cat "$work/seen")"
   done
 }
 mattes=CHANNELS=RGBA,cryptomatte
-run METHOD=frames FRAMES=22-23 $mattes OUT="$work/frames" && good "$work/frames"
-run METHOD=frames FRAMES=22 SHUTTER=180 FSTOP=1 FOCUS=2 FILTER=3 $mattes OUT="$work/blurred" && good "$work/blurred"
-run METHOD=still FRAMES=22-24 $mattes OUT="$work/still" && good "$work/still"
-run METHOD=walkthrough FRAMES=20-24 $mattes OUT="$work/walk" && good "$work/walk"
+run METHOD=frames FRAMES=22-23 $mattes OUT="$work/frames" && good "$work/frames" MovingBox
+run METHOD=frames FRAMES=22 SHUTTER=180 FSTOP=1 FOCUS=2 FILTER=3 $mattes OUT="$work/blurred" && good "$work/blurred" MovingBox
+run METHOD=still FRAMES=22-24 $mattes OUT="$work/still" && good "$work/still" MovingBox
+python3 -B pipelines/scenes/make_walkthrough.py pan pipelines/scenes/S3_indirect_room.glb "$work/pan.glb" || exit 1
+run SCENE="$work/pan.glb" METHOD=walkthrough FRAMES=0-4 KEY_DISTANCE=4 $mattes OUT="$work/walk" && good "$work/walk" Suzanne
+ls "$work"/walk/walked/*.warp.json > /dev/null || bad 'no frame was warped'
 # Pixels that stay have the mattes of their own frame: those of frame 24 are not those of 23.
 for frame in 0023 0024; do python3 tests/formats/read_mattes.py "$work/still/frames/$frame.exr" > "$work/$frame"; done
 cmp -s "$work/0023" "$work/0024" && bad 'mattes of another frame'
