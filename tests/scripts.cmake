@@ -40,7 +40,7 @@ add_test(NAME pipelines.advice COMMAND sh tests/pipelines/advice.sh WORKING_DIRE
 
 # Stages together, run by make at the top of the tree.
 foreach(script run_words rerun make_asks run_plan plan_example plan_refuses content_camera drop_kind environment
-               scenes leaving_out walkthrough still filter dynamic temporal preview split smoke own_scene)
+               scenes leaving_out walkthrough still filter mattes dynamic temporal preview split smoke own_scene)
   add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(pipelines.${script} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
@@ -51,6 +51,9 @@ add_test(NAME pipelines.from_blender COMMAND sh tests/pipelines/from_blender.sh 
 add_test(NAME pipelines.from_blender_module COMMAND sh tests/pipelines/from_blender.sh $<TARGET_FILE_DIR:scene-plan> build/peers/bpy/bin/python
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})   # tests/pipelines/get_bpy.sh installs it
 set_tests_properties(pipelines.from_blender pipelines.from_blender_module PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
+add_test(NAME pipelines.blender_mattes COMMAND sh -c "[ -x build/peers/bpy/bin/python ] || exit 77; exec build/peers/bpy/bin/python -B tests/pipelines/blender_mattes.py $<TARGET_FILE_DIR:scene-plan>"
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.blender_mattes PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.
 add_test(NAME pipelines.known_walks COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --known WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.random_walk COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --steps 40

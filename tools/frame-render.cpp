@@ -100,7 +100,7 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
   tool.list_option(
       "--channels", options.channels,
       "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, coverage, "
-      "influence, variance, diffuse.variance, samples, halves, seen");
+      "influence, variance, diffuse.variance, samples, halves, seen, cryptomatte (mattes by object and by material)");
   tool.file_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
   tool.file_option("--base", options.base,
                    "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit");

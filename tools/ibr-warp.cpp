@@ -38,6 +38,8 @@ void check(const tools::Tool& tool, tools::WarpFramesOptions& options, bool seve
     if (group == "RGBA" || group == "layers" || std::ranges::count(kFrameLayers, group) > 0)
       throw InputError("--channels: '" + group +
                        "' is colour, which comes from the keys; name data: Z, N, P, id, albedo, motion");
+  if (asked(options.channels, "cryptomatte"))
+    throw InputError("--channels: cryptomatte cannot be warped; frame-render --mask --base counts it for all pixels");
   check_channels(options.channels);
   if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = vision::slow_speed(tools::kPixelsPerDegree);
 }
@@ -80,6 +82,10 @@ int main(int argc, char** argv) {
     check(tool, options, tool.common().frames.size() > 1);
     tool.stats().phase("load");
     const std::vector<tools::LoadedKey> keys = tools::load_keys(tool, options.keys);
+    if (keys[0].has_mattes && options.mask.empty())
+      tool.warn(keys[0].file +
+                ": cryptomatte is left out, as shares of a key are not those of another frame; "
+                "frame-render --mask --base counts it anew");
     (options.view.empty() ? tools::warp_frames : tools::warp_view)(tool, options, keys);
     return tools::exit_ok;
   });

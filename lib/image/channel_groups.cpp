@@ -6,6 +6,14 @@
 
 namespace tempolux {
 
+bool is_matte(std::string_view channel) {
+  const std::size_t last = channel.rfind('.');
+  if (last == std::string_view::npos) return false;
+  std::string_view layer = channel.substr(0, last);
+  layer.remove_prefix(layer.rfind('.') + 1);  // npos + 1 is 0
+  return layer.starts_with("Crypto") || layer.starts_with("crypto");
+}
+
 bool is_in_group(std::string_view channel, std::string_view group) {
   const auto starts_with_group = [&](std::string_view name) {
     return channel.size() > name.size() && channel.starts_with(name) && channel[name.size()] == '.';
@@ -18,6 +26,7 @@ bool is_in_group(std::string_view channel, std::string_view group) {
   }
   if (group == "motion")
     return starts_with_group("forward") || starts_with_group("backward") || channel == "valid" || channel == "speed";
+  if (group == "cryptomatte") return is_matte(channel);
   return channel == group || starts_with_group(group);
 }
 

@@ -16,14 +16,18 @@ inline constexpr std::array<const char*, 6> kFrameLayers{"emission", "specular",
                                                          "caustic",  "indirect", "volume"};
 
 /// True if the channel belongs to the group. RGBA: R, G, B, A. layers: the colours of emission, specular, direct,
-/// caustic, indirect and volume. motion: forward.*, backward.*, valid, speed. Any other group: the channel of this
-/// name, and GROUP.*, as id.object of `id`.
+/// caustic, indirect and volume. motion: forward.*, backward.*, valid, speed. cryptomatte: is_matte(). Any other group:
+/// the channel of this name, and GROUP.*, as id.object of `id`.
 bool is_in_group(std::string_view channel, std::string_view group);
 
-/// True for R, G, B and A of the picture or of a layer.
+/// True for channels of a layer, or of a view's layer, whose name begins with Crypto or crypto: CryptoObject00.R,
+/// ViewLayer.CryptoAsset01.A. Such channels hold hashes of names and shares of the pixel (cryptomatte.h).
+bool is_matte(std::string_view channel);
+
+/// True for R, G, B and A of the picture or of a layer, but not of mattes.
 inline bool is_colour(std::string_view channel) {
   const std::string_view last = channel.substr(channel.rfind('.') + 1);  // npos + 1 is 0
-  return last == "R" || last == "G" || last == "B" || last == "A";
+  return (last == "R" || last == "G" || last == "B" || last == "A") && !is_matte(channel);
 }
 
 /// True if the requested groups include this one.

@@ -28,6 +28,7 @@
 #include "lib/core/parallel.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/channel_groups.h"
+#include "lib/image/cryptomatte.h"
 #include "lib/image/exr_claims.h"
 #include "lib/image/exr_plain.h"
 #include "lib/image/foreign_names.h"
@@ -107,7 +108,8 @@ Imf::Header make_bare_header(const Image& image, const ExrWriteOptions& options)
 
 Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
   Imf::Header header = make_bare_header(image, options);
-  for (const auto& [name, text] : image.text) header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, text] : image.text)
+    if (!describes_missing_mattes(image, name)) header.insert(name, Imf::StringAttribute(text));
   for (const auto& [name, number] : image.numbers) {
     if (name == "framesPerSecond") Imf::addFramesPerSecond(header, Imf::guessExactFps(number));
     else header.insert(name, Imf::DoubleAttribute(number));

@@ -25,8 +25,9 @@ struct ExrWriteOptions {
 /// synced nor renamed; tools/common/output.h does both. Equal images give equal files for any number of threads. Floats
 /// keep their bits, including -0 and denormals.
 ///
-/// Attributes: text as strings; numbers as doubles, framesPerSecond as OpenEXR's rational (23.976 becomes 24000/1001);
-/// the matrices worldToCamera and worldToNDC as 4x4 floats, as in the standard, other matrices as 4x4 doubles.
+/// Attributes: text as strings, but for those of mattes without channels (describes_missing_mattes); numbers as
+/// doubles, framesPerSecond as OpenEXR's rational (23.976 becomes 24000/1001); the matrices worldToCamera and
+/// worldToNDC as 4x4 floats, as in the standard, other matrices as 4x4 doubles.
 ///
 /// Throws ResourceError if the file cannot be written. Throws InputError "FILE: channel C: pixel (x, y): ..." for NaN
 /// in any channel, for infinity in any channel except Z (there +infinity means no surface), and for a number or matrix

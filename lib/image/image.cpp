@@ -7,6 +7,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/image/channel_groups.h"
 
 namespace tempolux {
 
@@ -82,7 +83,7 @@ std::vector<std::string> Image::layers() const {
   std::set<std::string> names;  // "" sorts first
   for (const Channel& channel : channels) {
     if (channel.name == "R") names.insert("");
-    if (channel.name.size() > 2 && channel.name.ends_with(".R"))
+    if (channel.name.size() > 2 && channel.name.ends_with(".R") && !is_matte(channel.name))
       names.insert(channel.name.substr(0, channel.name.size() - 2));
   }
   std::erase_if(names, [&](const std::string& name) {

@@ -38,7 +38,7 @@ struct Image {
   /// The three planes LAYER.R, .G, .B; layer "" means R, G, B. Throws InputError that lists the layers if one is
   /// missing.
   std::array<const std::vector<float>*, 3> rgb(const std::string& layer) const;
-  std::vector<std::string> layers() const;  ///< layers with .R .G .B; "" comes first if R G B exist
+  std::vector<std::string> layers() const;  ///< layers with .R .G .B, without mattes; "" comes first if R G B exist
 };
 
 /// For each pixel, 1 if any channel of the image is not 0, else 0 (formats/mask/mask.md).

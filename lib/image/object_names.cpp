@@ -6,14 +6,17 @@
 
 namespace tempolux {
 
+std::string without_controls(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return name;
+}
+
 void set_object_names(Image& image, const std::set<std::uint32_t>& ids, const std::vector<std::string>& names) {
   std::string text;
   for (const std::uint32_t id : ids) {
     if (id >= names.size() || names[id].empty()) continue;
-    std::string name = names[id];
-    std::ranges::replace_if(
-        name, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-    text += std::to_string(id) + " " + name + "\n";
+    text += std::to_string(id) + " " + without_controls(names[id]) + "\n";
   }
   if (!text.empty()) image.text[std::string(kObjectNames)] = text;
 }

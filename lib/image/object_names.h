@@ -17,6 +17,9 @@ inline constexpr std::string_view kObjectNames = "tempolux:objects";
 /// Names of objects by id.object.
 using ObjectNames = std::map<std::uint32_t, std::string>;
 
+/// The name with blanks in place of control characters.
+std::string without_controls(std::string name);
+
 /// Writes the attribute: a line "ID NAME" for each of `ids` that has a name. `names` is indexed by id; an empty name is
 /// none. Control characters become blanks. Without any line the attribute is not written.
 void set_object_names(Image& image, const std::set<std::uint32_t>& ids, const std::vector<std::string>& names);

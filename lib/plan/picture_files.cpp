@@ -81,7 +81,9 @@ std::string in_motion(const GraphBuilder& g, int frame, const std::string& chann
 std::string pixels_of(const GraphBuilder& g, int frame) { return pixels_with(g, frame, 1); }
 
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels) {
-  Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_motion(g, frame, channels)};
+  Command c{"--frame " + std::to_string(frame),
+            {},
+            g.cameras({frame}) + in_motion(g, frame, channels) + in_mattes(g, channels)};
   add_light(g, frame, c);
   for (const std::string& words : {g.size, pixels, "--channels " + channels}) c.option(words);
   c.option(kAudit);

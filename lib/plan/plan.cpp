@@ -294,6 +294,10 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
   plan.media = bool(media);
+  Hasher names;
+  for (const std::string& name : scene.object_names) names.add(std::string_view(name));
+  for (const Material& material : scene.materials) names.add(std::string_view(material.name));
+  plan.names = names.hex();
   const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), options);
   plan.last_frame =
       media

@@ -72,6 +72,7 @@ struct Plan {
   /// all frames of the animation.
   std::vector<PlannedSegment> shot;
   bool media = false;  ///< true if the scene has media
+  std::string names;   ///< hash of the names of objects and materials, which mattes show
   std::vector<std::string> warnings;
 
   /// The frame in the middle of the animation, if its segment is in the plan (make_plan).

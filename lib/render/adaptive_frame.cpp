@@ -200,6 +200,7 @@ void AdaptiveFrame::finish() {
   for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
   for (std::size_t p = 0; p < counts_.size(); ++p) {
+    if (options_.camera_samples) frame_.camera_samples.push_back(std::uint32_t(counts_[p].own));
     frame_.samples_per_pixel += counts_[p].own;
     frame_.at_limit += shown(p) && counts_[p].own >= options_.adaptive_limit;
   }

@@ -16,10 +16,10 @@
 namespace tempolux {
 namespace {
 
-const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specular",  "direct",   "caustic",
-                                       "indirect", "volume", "Z",        "N",         "P",        "id",
-                                       "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
-                                       "samples",  "halves", "seen"};
+const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specular",   "direct",   "caustic",
+                                       "indirect", "volume", "Z",        "N",          "P",        "id",
+                                       "albedo",   "motion", "coverage", "influence",  "variance", "diffuse.variance",
+                                       "samples",  "halves", "seen",     "cryptomatte"};
 
 /// Finds a surface point again in another frame, where its surface may have moved or been deformed (same_surfaces). The
 /// point has the same triangle and barycentric coordinates there.

@@ -7,6 +7,7 @@
 #include "formats/error.h"
 #include "formats/large_pages.h"
 #include "lib/core/parallel_each.h"
+#include "lib/image/channel_groups.h"
 #include "lib/render/adaptive_frame.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pixel_samples.h"
@@ -76,12 +77,18 @@ constexpr std::array<std::uint64_t, 2> kSeedsOfHalves{0x68616c665f6f6e65ull, 0x6
 
 }  // namespace
 
+std::vector<std::uint64_t> seeds_of_samples(const FrameOptions& options) {
+  if (!options.halves) return {options.seed};
+  return {options.seed ^ kSeedsOfHalves[0], options.seed ^ kSeedsOfHalves[1]};
+}
+
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
   RenderedFrame frame;
   if (options.halves) {
+    const std::vector<std::uint64_t> seeds = seeds_of_samples(options);
     for (std::size_t h = 0; h < 2; ++h) {
       frame.half[h] = empty_layers(scene, view, options);
-      take_samples({scene, view, options.known, options.seed ^ kSeedsOfHalves[h], options.shutter}, options.mask,
+      take_samples({scene, view, options.known, seeds[h], options.shutter}, options.mask,
                    std::max(1, options.samples / 2), frame.half[h], frame.rays,
                    options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
     }
@@ -107,6 +114,7 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
                      "; render both at one size");
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
     Channel& channel = image.channels[i];
+    if (is_matte(channel.name)) continue;
     const Channel* from = base.find(channel.name);
     if (!from && i < data_channels) continue;
     const bool known =

@@ -31,6 +31,7 @@ struct FrameOptions {
   /// (lib/render/spread_outliers.h). In a masked frame only pixels of the mask receive light.
   bool spread_outliers = false;
   bool sample_halves = false;         ///< keep LayerImage::sample_halves
+  bool camera_samples = false;        ///< keep RenderedFrame::camera_samples
   const Shutter* shutter = nullptr;   ///< motion blur; null: all samples see one moment
   const KnownLight* known = nullptr;  ///< light at which camera paths may end; or null
   std::vector<std::uint8_t> mask;     ///< by pixel, 0: not rendered; empty: all pixels are rendered
@@ -63,19 +64,25 @@ struct RenderedFrame {
   RayCounts rays;
   RayCounts noise_rays;          ///< rays of the second rendering (NoiseCheck)
   double samples_per_pixel = 0;  ///< mean number of camera rays
-  FrameNoise noise;              ///< remaining noise
-  double at_limit = 0;           ///< share of the pixels that have reached FrameOptions::adaptive_limit
-  double spread = 0;             ///< share of the light that spread_outliers moved
-  double mean_radiance = 0;      ///< W/m^2/sr, mean over pixels and channels
+  /// By pixel: number of camera samples. Empty unless asked for, and without pixel_error: mean.samples everywhere.
+  std::vector<std::uint32_t> camera_samples;
+  FrameNoise noise;          ///< remaining noise
+  double at_limit = 0;       ///< share of the pixels that have reached FrameOptions::adaptive_limit
+  double spread = 0;         ///< share of the light that spread_outliers moved
+  double mean_radiance = 0;  ///< W/m^2/sr, mean over pixels and channels
 };
 
 /// Renders a frame. A pixel is the mean of samples that are stratified over its area (box filter). Same frame for any
 /// number of threads.
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
 
-/// Copies pixels with mask 0 from `base`, bit for bit, in every channel of `image`. The first `data_channels` channels
-/// of `image` are valid for every pixel; those that `base` lacks stay as they are. Channels LAYER.noise and
-/// halves.confirmed that `base` lacks become 0. Throws InputError if sizes differ or if `base` lacks another channel.
+/// Seeds of the camera samples of a frame's pixels: one, or those of the two halves, which have half of the samples.
+std::vector<std::uint64_t> seeds_of_samples(const FrameOptions& options);
+
+/// Copies pixels with mask 0 from `base`, bit for bit, in every channel of `image` but the mattes. The first
+/// `data_channels` channels of `image` are valid for every pixel; those that `base` lacks stay as they are. Channels
+/// LAYER.noise and halves.confirmed that `base` lacks become 0. Throws InputError if sizes differ or if `base` lacks
+/// another channel.
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels,
                       Image& image);
 

@@ -6,6 +6,7 @@
 #include "formats/error.h"
 #include "lib/core/json.h"
 #include "lib/image/any_io.h"
+#include "lib/image/cryptomatte.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "lib/image/preview.h"
@@ -53,6 +54,17 @@ auto named(const std::string& path, const Make& make) {
   } catch (const InputError& error) { throw InputError(path + ": " + error.what()); }
 }
 
+/// Layers of mattes by name, with the number of their ranks and of the names in their manifest.
+Facts matte_facts(const Image& image) {
+  Facts facts = Facts::array();
+  for (const MatteLayer& layer : matte_layers_in(image)) {
+    const Facts manifest = Facts::parse(layer.manifest, nullptr, false);
+    facts.push_back(
+        {{"layer", layer.name}, {"ranks", layer.ranks}, {"names", manifest.is_object() ? manifest.size() : 0}});
+  }
+  return facts;
+}
+
 Facts channel_facts(const ChannelStatistics& channel) {
   Facts facts = {{"channel", channel.name}, {"type", channel.ids ? "uint" : "float"}, {"min", channel.min}};
   facts.update({{"max", channel.max}, {"mean", channel.mean}, {"zeros", channel.zeros}});
@@ -96,6 +108,7 @@ Facts image_facts(const std::string& path, bool allow_nan) {
   facts["layers"] = Facts::array();
   const std::vector<std::string> layers = image.layers();
   for (const std::string& layer : layers) facts["layers"].push_back(layer.empty() ? "RGB" : layer);
+  if (Facts mattes = matte_facts(image); !mattes.empty()) facts["mattes"] = std::move(mattes);
   facts["channels"] = Facts::array();
   for (const ChannelStatistics& channel : channel_statistics(image))
     facts["channels"].push_back(channel_facts(channel));

@@ -1,5 +1,7 @@
 #include "tools/stages/frame_output.h"
 
+#include <utility>
+
 #include "lib/image/object_names.h"
 
 namespace tempolux::tools {
@@ -22,14 +24,15 @@ FrameOutputs::FrameOutputs(const std::string& path, bool halves) {
   for (const char* half : {"_a", "_b"}) outputs_.emplace_back(name_with(path, half));
 }
 
-void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
+void FrameOutputs::write(const RenderedFrame& rendered, Image data, const FrameDescription& description,
                          const KeptPixels& kept) {
+  const std::size_t data_channels = data.channels.size();
   const std::set<std::uint32_t> objects = objects_of(data, description);
   const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    Image image = data;
+    Image image = i + 1 < outputs_.size() ? data : std::move(data);
     add_colour_channels(*parts[i], description.channels, image);
-    if (!kept.anew.empty()) keep_base_pixels(kept.anew, kept.from, data.channels.size(), image);
+    if (!kept.anew.empty()) keep_base_pixels(kept.anew, kept.from, data_channels, image);
     if (kept.change) add_change(*kept.change, image);
     describe_frame(image, description.identity, description.frame, description.fps, description.history,
                    description.camera);

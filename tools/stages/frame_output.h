@@ -39,8 +39,7 @@ class FrameOutputs {
   /// Creates the files at once, so that an unwritable place is reported before the work.
   FrameOutputs(const std::string& path, bool halves);
   /// Writes and commits all files. `data` holds the data channels already.
-  void write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
-             const KeptPixels& kept);
+  void write(const RenderedFrame& rendered, Image data, const FrameDescription& description, const KeptPixels& kept);
 
  private:
   std::vector<Output> outputs_;  ///< the mean, then half a and half b

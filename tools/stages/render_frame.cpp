@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "formats/error.h"
 #include "lib/core/random.h"
@@ -10,6 +11,7 @@
 #include "lib/image/exr_io.h"
 #include "lib/render/blurred_albedo.h"
 #include "lib/render/data_channels.h"
+#include "lib/render/matte_channels.h"
 #include "lib/render/shutter.h"
 #include "lib/render/still_pixels.h"
 #include "lib/scene/light_units.h"
@@ -59,6 +61,7 @@ FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
   // frame's error would look too small.
   if (is_reference) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
   frame.spread_outliers = !options.keep_outliers && !is_reference;
+  frame.camera_samples = asked(options.channels, "cryptomatte");
   frame.progress = tool.progress_sink();
   return frame;
 }
@@ -154,6 +157,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
   if (view.has_lens() || shutter) blur_albedo(scene, view, shutter.get(), image);
   add_seen_channels(scene, view, options.channels, image);
+  add_matte_channels(scene, view, frame_options, rendered, MatteNames(input.scene()), options.channels, image);
   add_influence_channels(scene, view, lit.light().get().localised, options.channels, image);
   tool.stats().phase("write");
   const FrameDescription description{identity_of(frame),
@@ -165,7 +169,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                                      input.scene().object_names,
                                      options.channels,
                                      options.exr()};
-  outputs.write(rendered, image, description,
+  outputs.write(rendered, std::move(image), description,
                 before ? KeptPixels{still.anew, before->image(), &still} : KeptPixels{base.mask, base.base});
   tool.stats().end_phase();
   rendered.rays += still.rays;

@@ -22,6 +22,7 @@ struct LoadedKey {
   std::optional<int> frame;  ///< from tempolux:frame
   std::unique_ptr<KeyFrame> key;
   std::vector<Vec3d> points;  ///< grid_of_points() of the key
+  bool has_mattes = false;    ///< the file has channels of Cryptomatte, which are not warped
 };
 
 /// Loads one or two keys. Throws InputError if their sizes or colour channels differ, or a key lacks depth, colour or

@@ -8,7 +8,8 @@ namespace {
 
 Image frame_of_light() {
   Image frame{2, 1, {}, {}, {}, {}};
-  for (const char* name : {"R", "G", "B", "A", "Z", "direct.R", "albedo.R"}) frame.add(name).values = {0.5f, 0.5f};
+  for (const char* name : {"R", "G", "B", "A", "Z", "direct.R", "albedo.R", "CryptoObject00.G"})
+    frame.add(name).values = {0.5f, 0.5f};
   return frame;
 }
 
@@ -23,7 +24,8 @@ TEST(SmokeLayer, DimsLightOnceAndAddsItsOwn) {
   EXPECT_EQ(frame.find("volume.B")->values, std::vector<float>({3, 0}));
   EXPECT_EQ(frame.find("direct.R")->values, std::vector<float>({0.25f, 0.5f}));
   EXPECT_EQ(frame.find("A")->values, std::vector<float>({0.75f, 0.5f}));  // 1 - .5 (1 - .5)
-  for (const char* data : {"Z", "albedo.R"}) EXPECT_EQ(frame.find(data)->values, std::vector<float>({0.5f, 0.5f}));
+  for (const char* data : {"Z", "albedo.R", "CryptoObject00.G"})
+    EXPECT_EQ(frame.find(data)->values, std::vector<float>({0.5f, 0.5f}));
 }
 
 TEST(SmokeLayer, LeavesTheLightOfAnAttenuatedFrame) {
