@@ -167,8 +167,11 @@ def fault(cluster, shot, inject, way, stage, rng):
                 if job.endswith("BeginTime"):
                     slurm("scontrol", "update", f"jobid={job.split()[0]}", "starttime=now")
     else:
-        os.killpg(make.pid, signal.SIGKILL)
-        return [f"goes on for 200 s: {slurm('squeue')}"]
+        if way != "srun" or slurm("squeue", "-h").strip():
+            os.killpg(make.pid, signal.SIGKILL)
+            return [f"goes on for 200 s: {slurm('squeue')}"]
+        os.killpg(make.pid, signal.SIGINT)   # srun waits for a job that the controller has forgotten (docs/farm.md)
+        make.communicate(timeout=60)
     if inject is stopped and not wait_for(lambda: not slurm("squeue", "-h").strip(), 20):
         return [f"Ctrl-C leaves in the queue: {slurm('squeue')}"]
     cluster.mend()
