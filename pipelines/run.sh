@@ -80,10 +80,22 @@ shared_aside() {
   mkdir "$aside"
 }
 shared_aside 2> /dev/null || aside=$(mktemp -d) || exit 3
+# Removes what makes of this machine have left in state that were killed.
+sweep() (
+  set +f
+  for left in "$OUT"/state/.*."${ours%.*}".*; do
+    process=${left##*."${ours%.*}".}
+    [ -d "/proc/${process%%.*}" ] || rm -rf "$left"
+  done
+  for left in "$OUT"/state/.*.claim; do
+    { read -r of process _ < "$left"; } 2> /dev/null && [ "$of" = "$(uname -n)" ] && [ ! -d "/proc/$process" ] &&
+      rm -f "$left"
+  done
+)
 # Removes the files of this make, and what its killed commands have left unfinished. Removes an OUT that this make has
 # made, too, if OUT holds no plan and no other file.
 clean_up() {
-  [ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || sh "$PIPELINES/tidy.sh" "$OUT" > /dev/null
+  [ ! -s "$aside/commands" ] && [ -z "$ran_jobs" ] || { sh "$PIPELINES/tidy.sh" "$OUT" > /dev/null; sweep; }
   rm -rf "$aside"
   [ -z "$copies" ] || rm -f "$OUT/$plan" "$OUT/$PLAN_JSON"
   [ -z "$fresh" ] || [ -e "$OUT/plan.mk" ] || {
@@ -162,16 +174,7 @@ else
   if [ -w "$OUT/state" ]; then
     plan=state/.plan.mk.$ours copies=yes
     export PLAN="$plan" PLAN_JSON="state/.plan.json.$ours"
-    # What makes have left that were killed.
-    (set +f
-      for left in "$OUT"/state/.*."${ours%.*}".*; do
-        process=${left##*."${ours%.*}".}
-        [ -d "/proc/${process%%.*}" ] || rm -rf "$left"
-      done
-      for left in "$OUT"/state/.*.claim; do
-        { read -r of process _ < "$left"; } 2> /dev/null && [ "$of" = "$(uname -n)" ] && [ ! -d "/proc/$process" ] &&
-          rm -f "$left"
-      done)
+    sweep
     cp "$OUT/plan.mk" "$OUT/$plan" && cp "$OUT/plan.json" "$OUT/$PLAN_JSON" || exit
   fi
   exec 7>&-

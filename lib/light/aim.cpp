@@ -41,17 +41,17 @@ Aim::Aim(std::span<const AimSphere> spheres, std::span<const AimSphere> openings
   if (!(scene_radius > 0)) return;
   const double aimed = 1 - kUniform, of_openings = openings.empty() ? 0 : spheres.empty() ? aimed : aimed / 2;
   add_given(spheres, aimed - of_openings);
-  add_openings(openings, of_openings);
+  add_all(openings, of_openings);
 }
 
-void Aim::add_openings(std::span<const AimSphere> openings, double share) {
-  const double sum = sum_of_weights(openings);
-  for (const AimSphere& opening : openings) add(opening.centre, opening.radius, share * opening.weight / sum);
-}
-
-/// Adds the given spheres and the larger spheres around them, which have the same part of the share as without
-/// openings.
 void Aim::add_given(std::span<const AimSphere> spheres, double share) {
+  add_all(spheres, share);
+  given_ = spheres.size();
+  for (const AimSphere& sphere : spheres) smallest_ = std::min(smallest_, sphere.radius);
+}
+
+/// Adds spheres and the larger spheres around them. Both have the same part of the share as spheres without openings.
+void Aim::add_all(std::span<const AimSphere> spheres, double share) {
   if (spheres.empty()) return;
   const double sum = sum_of_weights(spheres);
   double squares = 0;
@@ -65,11 +65,7 @@ void Aim::add_given(std::span<const AimSphere> spheres, double share) {
   std::vector<double> around;  // radii
   for (double radius = 2 * std::sqrt(squares); radius <= scene_radius_; radius *= 2) around.push_back(radius);
   const double of_around = around.empty() ? 0 : share * kAround / (1 - kUniform), aimed = share - of_around;
-  for (const AimSphere& sphere : spheres) {
-    add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
-    smallest_ = std::min(smallest_, sphere.radius);
-  }
-  given_ = discs_.size();
+  for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
   for (const double radius : around) add(middle, radius, of_around / double(around.size()));
 }
 

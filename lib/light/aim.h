@@ -24,10 +24,10 @@ struct AimSphere {
 /// radius R in front of the scene. Else it chooses sphere k with probability w_k and starts uniformly on the disc of
 /// radius r_k that the sphere covers, seen along the light. The constructor adds larger spheres around all given ones,
 /// each twice as wide as the one before, up to the scene's; together they have the share kAround. Openings are spheres
-/// that light passes on its way to what is seen. If spheres and openings are given, the given spheres and the larger
-/// ones around them keep half of their shares, and the openings get the other half. If openings alone are given, the
-/// openings get the share 1 - kUniform. Bounces are not aimed at openings.
-/// The pdf [1/m^2] of a start point sums over all ways to choose the point:
+/// that light passes on its way to what is seen; larger spheres are added around them, too. If spheres and openings are
+/// given, the given spheres and the larger ones around them keep half of their shares, and the openings and those
+/// around them get the other half. If openings alone are given, they get the share 1 - kUniform. Bounces are not aimed
+/// at openings. The pdf [1/m^2] of a start point sums over all ways to choose the point:
 ///     p = kUniform / (pi R^2) + (1 - kUniform) sum_k w_k [disc k holds the point] / (pi r_k^2)
 /// A photon's flux is divided by p, so the expected light does not depend on the spheres or their weights. Flux is at
 /// most 1 / kUniform times the flux without spheres, so badly placed spheres cost little.
@@ -100,7 +100,7 @@ class Aim {
     bool holds(Vec3d point) const { return length2(point - centre) < radius * radius; }
   };
   void add_given(std::span<const AimSphere> spheres, double share);
-  void add_openings(std::span<const AimSphere> openings, double share);
+  void add_all(std::span<const AimSphere> spheres, double share);
   void add(Vec3d centre, double radius, double share);
   double density(double x, double y, Vec3d across, Vec3d up, std::size_t chosen) const;
   std::span<const Disc> given() const { return std::span(discs_).first(given_); }
