@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random layered materials on balls in a room: is the light of the chain that of the path tracer?
 
-    python3 tests/bench/layered_materials.py BIN OUT [--rooms 5] [--runs 4] [--spp 256] [--only sheen] [--films]
+    python3 tests/bench/layered_materials.py BIN OUT [--first 0] [--rooms 5] [--runs 4] [--spp 256] [--only sheen] [--films]
                                              [--glass]
 
 A room holds eight balls. Each has a base of random colour, metal or not, and by chance a clearcoat, a sheen and an
@@ -181,13 +181,14 @@ def main():
     parser.add_argument("out", type=Path)
     for name, default in (("rooms", 5), ("runs", 4), ("spp", 256)):
         parser.add_argument(f"--{name}", type=int, default=default)
+    parser.add_argument("--first", type=int, default=0, help="number of the first room [0]")
     parser.add_argument("--only", default="", help="clearcoat, sheen or anisotropy: leaves out the others; none: all")
     for name in ("films", "glass"):
         parser.add_argument(f"--{name}", action="store_true")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     beyond = count = 0
-    for number in range(options.rooms):
+    for number in range(options.first, options.first + options.rooms):
         scene = options.out / f"room{number}.gltf"
         room(scene, number, options)
         pairs = [render(options.bin, scene, options.out, seed + 1, options.spp) for seed in range(options.runs)]

@@ -73,13 +73,14 @@ def main():
     parser.add_argument("--sky", help="R,G,B")
     parser.add_argument("--least", type=int, default=20, help="pixels of an object that is shown")
     parser.add_argument("--only", choices=("world", "area", "spot"))
+    parser.add_argument("--theirs", type=lambda p: Path(p).resolve(), help="another file for Cycles, with the same objects: to try a cause")
     wish = parser.parse_args()
     wish.out.mkdir(parents=True, exist_ok=True)
     if wish.only:
         wish.scene = alike(wish.scene, wish.only, wish.out.resolve() / f"{wish.only}.glb")
     (wish.out / "tmp").mkdir(exist_ok=True)
     bench = SimpleNamespace(project=Path(__file__).resolve().parents[2], out=wish.out.resolve())
-    cycles = Peer(bench, "cycles", {"scene": str(wish.scene), "size": wish.size, "light_units": wish.light_units, "camera": wish.camera,
+    cycles = Peer(bench, "cycles", {"scene": str(wish.theirs or wish.scene), "size": wish.size, "light_units": wish.light_units, "camera": wish.camera,
                                     "world": str(wish.world) if wish.world else None,
                                     "sky": [float(v) for v in wish.sky.split(",")] if wish.sky else None})
     sky = ["--environment", wish.world or wish.sky] if wish.world or wish.sky else []
