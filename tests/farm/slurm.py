@@ -27,7 +27,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from faults import clocks_apart, hungry_tools, jobs, no_memory, processes_in, slurm, stopped, table, tool_at, wait_for    # noqa: E402
+from faults import clocks_apart, hungry_tools, jobs, no_memory, processes_in, slurm, slurmctld_killed, slurmd_killed, stopped, table, tool_at, wait_for    # noqa: E402
 
 for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
@@ -166,6 +166,8 @@ def fault(cluster, shot, inject, way, stage, rng):
             for job in slurm("squeue", "-h", "-r", "-t", "PD", "-o", "%i %r").splitlines():
                 if job.endswith("BeginTime"):
                     slurm("scontrol", "update", f"jobid={job.split()[0]}", "starttime=now")
+                elif "DOWN" in job and inject in (slurmctld_killed, slurmd_killed) and second % 10 == 9:   # a new daemon may take a node for lost
+                    slurm("scontrol", "update", "nodename=n1,n2", "state=resume")
     else:
         if way != "srun" or slurm("squeue", "-h").strip():
             os.killpg(make.pid, signal.SIGKILL)

@@ -116,8 +116,6 @@ def principled(node, stack):
     elif is_constant(look["base"]) and is_constant(look["transmission"]):
         # Since 4.0 glass takes the root of the colour at each of its two surfaces.
         look["base"] = tuple(max(c, 0.0) ** (1 - as_number(look["transmission"]) / 2) for c in as_tuple(look["base"]))
-    if not is_constant(look["metallic"]) or 0 < look["metallic"] < 1:
-        half_metal(look)
     if (
         pick(node.inputs, "Coat Tint") is not None
         and look["coat"] != 0
@@ -128,38 +126,6 @@ def principled(node, stack):
     if rough is not None and resolve(rough, stack) != 0:
         look.lose("Diffuse Roughness is left out")
     return look
-
-
-def half_metal(look):
-    """Cycles mixes a matte and a metal surface. Here one reflection has their mean above the matte part, which is brighter to make up for what
-    the reflection takes from it."""
-    known = all(is_constant(look[key]) for key in ("metallic", "base", "ior", "level", "tint", "transmission"))
-    if not known or as_number(look["transmission"]) > 0:
-        if not is_constant(look["metallic"]) or .05 < look["metallic"] < .95:
-            look.lose("a Metallic between 0 and 1 is darker here")
-        return
-    share, base, ior = as_number(look["metallic"]), as_tuple(look["base"]), as_number(look["ior"])
-    front = 2 * as_number(look["level"]) * (.04 if look.get("old_specular") else ((ior - 1) / (ior + 1)) ** 2)
-    reflected = tuple((1 - share) * min(1.0, front * t) + share * c for t, c in zip(as_tuple(look["tint"]), base))
-    top = min(max(max(reflected), 1e-6), .99)
-    if front == 0:                 # the metal part alone reflects, along the surface too
-        look["reflects"] = reflected, share
-        kept = (1 - share) / (1 - (20 * top + share) / 21)
-    else:
-        kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
-    look.update(
-        metallic=0.0,
-        base=tuple(min(1.0, kept * c) for c in base),
-        level=0.5,
-        tint=tuple(c / top for c in reflected),
-        ior=(1 + top**0.5) / (1 - top**0.5),
-        old_specular=False,
-    )
-
-
-def over_all_angles(front):
-    """What Schlick's reflection returns of light from all sides, if it is this from in front."""
-    return (20 * front + 1) / 21
 
 
 def conductor(node, stack):
