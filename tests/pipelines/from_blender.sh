@@ -100,6 +100,19 @@ assert near([.8 * c for c in plain["baseColorFactor"][:3]], [.75 * c for c in (.
 # Metallic .3 without a dielectric reflection.
 plain, more = looks["Bare"]
 assert near([plain["metallicFactor"]], [.3]) and more["KHR_materials_specular"]["specularFactor"] == 0, looks["Bare"]
+# Blender's widths are r^2 / a and r^2 a, a^2 = 1 - .9 * .8; on the side of a cylinder the wide one goes round the axis.
+plain, more = looks["Brushed"]
+a = (1 - .9 * .8) ** .5
+thin, wide = plain["roughnessFactor"] ** 2, more["KHR_materials_anisotropy"]["anisotropyStrength"] ** 2
+assert near([thin, wide * (1 - thin) + thin], [.35 ** 2 * a, .35 ** 2 / a]), looks["Brushed"]
+attributes = shot["meshes"][named["Brushed"]["mesh"]]["primitives"][0]["attributes"]
+normals, tangents = numbers(attributes["NORMAL"]), numbers(attributes["TANGENT"])
+sides = [k for k in range(len(normals) // 3) if abs(normals[3 * k + 1]) < .9]
+def around(k):
+    x, y, z = normals[3 * k:3 * k + 3]
+    across = math.hypot(x, z)
+    return z / across, 0, -x / across, 1
+assert len(sides) >= 16 and all(abs(p - q) < .02 for k in sides for p, q in zip(tangents[4 * k:4 * k + 4], around(k))), "tangents"
 # In Blender nothing is behind a lamp without power; one that has power in any frame stays.
 assert "Dark" not in named and not any(k.startswith("Dark") for k in [*strength, *looks]), sorted(named)
 assert "Rises" in named, sorted(named)

@@ -113,7 +113,7 @@ for name, kind, x in (("Domain", smoke, 3), ("Odd", odd, 4)):
     bpy.ops.mesh.primitive_cube_add(size=.5, location=(x, 2, 1))
     bpy.context.object.name = name
     bpy.context.object.data.materials.append(kind)
-# A metal by half; a quarter of a mirror above matte; a solid of glass that is smooth across its sharp edges.
+# A metal by half; a quarter of a mirror above matte; a solid of glass that is smooth across its sharp edges; a brushed metal.
 half, _ = material("Half", "ShaderNodeBsdfPrincipled", **{"Metallic": .5, "Base Color": (.9, .3, .1, 1)})
 glazed, mirror = material("Glazed", "ShaderNodeBsdfAnisotropic" if bpy.app.version >= (4, 0) else "ShaderNodeBsdfGlossy", Color=(.8, .8, .8, 1), Roughness=.1)
 tree = glazed.node_tree
@@ -123,7 +123,8 @@ for k, node in ((1, below), (2, mirror)):
     tree.links.new(node.outputs[0], mixture.inputs[k])
 tree.links.new(mixture.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
 tumbler, _ = material("Tumbler", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0)
-for name, kind, x in (("Half", half, -1), ("Glazed", glazed, -1.4), ("Tumbler", tumbler, -1.8)):
+brushed, _ = material("Brushed", "ShaderNodeBsdfPrincipled", Metallic=1, Roughness=.35, Anisotropic=.8)
+for name, kind, x in (("Half", half, -1), ("Glazed", glazed, -1.4), ("Tumbler", tumbler, -1.8), ("Brushed", brushed, -2.6)):
     bpy.ops.mesh.primitive_cylinder_add(vertices=16, radius=.1, depth=.2, location=(x, 2, 1))
     bpy.context.object.name = name
     bpy.context.object.data.materials.append(kind)

@@ -88,6 +88,14 @@ def reflection(look, mean):
     return (1 + root) / (1 - root), 1.0, list(tint)
 
 
+def brushed(roughness, anisotropic):
+    """(roughness, strength) of glTF with Blender's widths: r^2 / a and r^2 a, a^2 = 1 - .9 anisotropic. In glTF the widths are
+    r^2 + (1 - r^2) s^2 and r^2."""
+    wide, a = max(roughness, 1e-3) ** 2, (1 - 0.9 * anisotropic) ** 0.5
+    along, across = min(1.0, wide / a), wide * a
+    return across**0.5, ((along - across) / (1 - across)) ** 0.5 if across < 1 else 0.0
+
+
 def set_extensions(result, look, means):
     """Extensions of the constants; `means` of what is linked."""
     extensions = result.setdefault("extensions", {})
@@ -124,9 +132,13 @@ def set_extensions(result, look, means):
             "iridescenceThicknessMinimum": mean("film"),
             "iridescenceThicknessMaximum": mean("film"),
         }
-    if mean("anisotropic") > 0 and (not is_constant(look["metallic"]) or as_number(look["metallic"]) > 0 or True):
+    if mean("anisotropic") > 0:
+        strength = unit(mean("anisotropic"))
+        if is_constant(look["roughness"]):
+            roughness, strength = brushed(as_number(look["roughness"]), strength)
+            result["pbrMetallicRoughness"]["roughnessFactor"] = roughness
         extensions["KHR_materials_anisotropy"] = {
-            "anisotropyStrength": unit(mean("anisotropic")),
+            "anisotropyStrength": strength,
             "anisotropyRotation": 6.283185307179586 * mean("anisotropic_rotation"),
         }
     if not extensions:

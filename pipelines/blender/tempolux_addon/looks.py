@@ -4,7 +4,7 @@ from .values import (Blend, Source, as_number, as_tuple, blend, follow, is_const
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 # Values of a look that blended() does not mix, and those of the light that a look reflects.
-NOT_BLENDED = ("normal", "displacement", "emission", "strength", "through", "old_specular", "reflects", "one_for_all_angles")
+NOT_BLENDED = ("normal", "displacement", "emission", "strength", "through", "old_specular", "reflects", "one_for_all_angles", "grain_axis")
 REFLECTED = ("base", "roughness", "ior", "tint")
 
 
@@ -122,10 +122,22 @@ def principled(node, stack):
         and resolve(pick(node.inputs, "Coat Tint"), stack) != WHITE
     ):
         look.lose("the tint of its coat is left out")
+    grain_of(look, pick(node.inputs, "Tangent"))
     rough = pick(node.inputs, "Diffuse Roughness")
     if rough is not None and resolve(rough, stack) != 0:
         look.lose("Diffuse Roughness is left out")
     return look
+
+
+def grain_of(look, tangent):
+    """Sets the axis that a brushed surface's tangents go round, if a Tangent node says one."""
+    if look["anisotropic"] == 0 or tangent is None or not tangent.is_linked:
+        return
+    node = tangent.links[0].from_node
+    if node.type == "TANGENT" and node.direction_type == "RADIAL":
+        look["grain_axis"] = node.axis
+    else:
+        look.lose("its tangents go round Z")
 
 
 def conductor(node, stack):

@@ -5,7 +5,7 @@ import os
 import bpy
 import numpy
 
-from . import gltf
+from . import gltf, grain
 from .nodes import distinct
 from .notes import Damage
 from .shapes import follow, reduce, split_creases
@@ -240,6 +240,10 @@ class Meshes:
         attributes = {"POSITION": make(gltf.axes(shape.points[vertex]), bounds=True, target=34962)}
         if shape.normals is not None:
             attributes["NORMAL"] = make(gltf.axes(shape.normals[corner]), target=34962)
+        axis = self.grain_axis(number, material) if shape.normals is not None else None
+        if axis:
+            along = gltf.axes(grain.around(shape.points, shape.normals[corner], vertex, axis))
+            attributes["TANGENT"] = make(numpy.concatenate([along, numpy.ones_like(along[:, :1])], axis=1).astype("f4"), target=34962)
         for k, uv in enumerate(sets):
             attributes[f"TEXCOORD_{k}"] = make(
                 numpy.stack([uv[index, 0], 1 - uv[index, 1]], axis=1).astype("f4"), target=34962
@@ -261,6 +265,14 @@ class Meshes:
                     target["NORMAL"] = make(gltf.axes(normals))
             result["targets"] = targets
         return result
+
+    def grain_axis(self, number, material):
+        """The axis that a brushed surface's tangents go round; None if it is not brushed, or if its texture coordinates give tangents."""
+        made = self.document.json["materials"][number]
+        brushed = made.get("extensions", {}).get("KHR_materials_anisotropy")
+        if not brushed or "normalTexture" in made or "anisotropyTexture" in brushed:
+            return None
+        return self.surface(material)[0].get("grain_axis", "Z")
 
     def black(self):
         return self.document.once("materials", {"name": "holdout", "doubleSided": True, "pbrMetallicRoughness":
