@@ -26,6 +26,7 @@ import family_faults
 import family_geometry
 import family_glass
 import family_images
+import family_lens
 import family_light
 import family_media
 import family_media_forms
@@ -41,7 +42,7 @@ from session import CASES, FULL, LONG, SHORT, Failed, Session
 
 ORDER = [m.__name__ for m in (family_scale, family_light, family_openings, family_environment, family_energy,
                               family_glass, family_geometry, family_photons, family_media, family_media_forms, family_movers, family_caches, family_images, family_numbers, family_time,
-                              family_camera, family_vision,
+                              family_camera, family_lens, family_vision,
                               family_bad, family_faults, family_tools)]
 CASES.sort(key=lambda case: ORDER.index(case[3].__module__))
 COLUMNS = ["case", "quantity", "expected", "got", "error", "seconds", "verdict"]
