@@ -197,7 +197,7 @@ if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 slurm() {
   ran_jobs=yes
   (cd "$OUT" && sh "$PIPELINES/jobs.sh" list) > "$aside/jobs" || exit
-  [ -s "$aside/jobs" ] || { ran_jobs=; return 0; }
+  [ -s "$aside/jobs" ] || { ran_jobs=; [ -z "$copies" ] || (cd "$OUT" && sh "$PIPELINES/slurm.sh" forget); return 0; }
   (cd "$OUT" && exec sh "$PIPELINES/slurm.sh" submit) & child=$!
   wait "$child" || failed $?
   child=

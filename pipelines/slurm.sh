@@ -2,6 +2,7 @@
 # slurm.sh -- submits the jobs of a plan (jobs.sh) to Slurm and watches them: `make slurm` (docs/farm.md).
 #
 #     slurm.sh submit        run inside OUT by run.sh: ends when all jobs have ended; with 2 if files are missing then
+#     slurm.sh forget        the same, if no file is missing: removes what a killed make has left of this plan
 #     slurm.sh task ARRAY    on a node: runs the job in line $SLURM_ARRAY_TASK_ID of the file ARRAY
 #
 # Jobs that wait for the same jobs are one array. Slurm itself runs on if the machine of make dies: the list of what was
@@ -146,8 +147,20 @@ watch() {
 cancel_all() { sed 's/_.*//' "$work/tasks" | sort -u | xargs -r scancel 2> /dev/null; }
 cancel() { cancel_all; stop; }
 
+named() { work=state/slurm-$( (echo "$GROUP"; cat "$PLAN") | cksum | tr ' ' -); }
+
+# Removes the notes of a make that was killed and whose jobs have made all files meanwhile.
+forget() {
+  named
+  [ -d "$work" ] || exit 0
+  exec 6> "state/.${work#state/}"
+  ! command -v flock > /dev/null || flock -n 6 || exit 0
+  [ ! -f "$work/tasks" ] || cancel_all
+  rm -rf "$work"
+}
+
 submit_all() {
-  work=state/slurm-$( (echo "$GROUP"; cat "$PLAN") | cksum | tr ' ' -)
+  named
   exec 6> "state/.${work#state/}"
   ! command -v flock > /dev/null || flock -n 6 ||
     { echo 'another make watches these jobs; this one waits for it'; flock 6; }
@@ -183,11 +196,12 @@ submit_all() {
 
 case $1 in
   submit) submit_all;;
+  forget) forget;;
   task)
     export ENVIRONMENT="$OUR_ENVIRONMENT" RUN=env PROGRESS='' CLAIMS='' NEEDS=''
     export FAILED="${2%/*}/failed.${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
     unset MAKEFLAGS MFLAGS MAKELEVEL
     [ -z "$THREADS" ] && TEMPOLUX_THREADS=$SLURM_CPUS_PER_TASK && export TEMPOLUX_THREADS
     exec sh "$PIPELINES/job.sh" run "$(sed -n "${SLURM_ARRAY_TASK_ID}p" "$2" | cut -f 1)";;
-  *) echo "slurm.sh: '$1' is none of submit, task" >&2; exit 2;;
+  *) echo "slurm.sh: '$1' is none of submit, forget, task" >&2; exit 2;;
 esac
