@@ -191,6 +191,7 @@ submit_all() {
       file[1] != "demo" { print file[1] ": not made; its job is submitted again (" round ")" }' "$work/missing" >&2
     rm -f "$work"/failed.*
   done
+  [ ! -f "$work/tasks" ] || cancel_all   # a controller that was killed may have put an ended job into the queue again
   rm -rf "$work"
 }
 

@@ -35,6 +35,17 @@ SMALL = {"SIZE": "64x36", "QUALITY": "draft", "INDIRECT": "records", "PHOTONS": 
 SRUNS = {"srun": "srun -Q -n1 -c{threads} --mem={mem} --time={time}", "salloc": "srun -Q -N1 -n1 --exact -c{threads} --mem={mem}"}
 
 
+def start_waiting():
+    """Starts jobs that wait after a requeue, two minutes as Slurm is set up. Returns the lines of the other jobs that wait."""
+    others = []
+    for job in slurm("squeue", "-h", "-r", "-t", "PD", "-o", "%i %r").splitlines():
+        if job.endswith("BeginTime"):
+            slurm("scontrol", "update", f"jobid={job.split()[0]}", "starttime=now")
+        else:
+            others.append(job)
+    return others
+
+
 class Shot:
     def __init__(self, folder, tools, name, **variables):
         self.tools, self.name, self.out = tools, name, folder / "disk" / name
@@ -87,7 +98,7 @@ class Shot:
         """What is not as it must be after a run that ended with 0."""
         left = [p.name for p in self.out.rglob("*") if re.search(r"[.]tmp[.]|[.]part[.]|[.]try[.]|^slurm-|[.]claim$", p.name)]
         left += [" ".join(words) for _, words in processes_in(self.out)]
-        wait_for(lambda: not slurm("squeue", "-h").strip(), 90)   # a controller that was killed may take ended jobs for running ones
+        wait_for(lambda: not start_waiting() and not slurm("squeue", "-h").strip(), 90)   # a controller that was killed may take ended jobs for running ones
         queue = slurm("squeue", "-h").strip()
         return (["other digests"] if self.digests(self.out) != self.right else []) + ([f"left are {left[:3]}"] if left else []) + \
             ([f"in the queue: {queue}"] if queue else [])
@@ -163,10 +174,8 @@ def fault(cluster, shot, inject, way, stage, rng):
             said = make.communicate(timeout=1)[0]
             break
         except subprocess.TimeoutExpired:   # a job that is requeued would wait for two minutes, until its node is surely free
-            for job in slurm("squeue", "-h", "-r", "-t", "PD", "-o", "%i %r").splitlines():
-                if job.endswith("BeginTime"):
-                    slurm("scontrol", "update", f"jobid={job.split()[0]}", "starttime=now")
-                elif "DOWN" in job and inject in (slurmctld_killed, slurmd_killed) and second % 10 == 9:   # a new daemon may take a node for lost
+            for job in start_waiting():
+                if "DOWN" in job and inject in (slurmctld_killed, slurmd_killed) and second % 10 == 9:   # a new daemon may take a node for lost
                     slurm("scontrol", "update", "nodename=n1,n2", "state=resume")
     else:
         if way != "srun" or slurm("squeue", "-h").strip():
