@@ -149,14 +149,20 @@ cancel() { cancel_all; stop; }
 
 named() { work=state/slurm-$( (echo "$GROUP"; cat "$PLAN") | cksum | tr ' ' -); }
 
-# Removes the notes of a make that was killed and whose jobs have made all files meanwhile.
+# Removes the folder of this plan, when all files are there. Cancels what is still in the queue: a controller that was
+# killed may put an ended job into the queue again.
+done_with() {
+  [ ! -f "$work/tasks" ] || cancel_all
+  rm -rf "$work"
+}
+
+# Removes the folder of this plan if a make of this plan was killed. Its jobs have made all files since.
 forget() {
   named
   [ -d "$work" ] || exit 0
   exec 6> "state/.${work#state/}"
   ! command -v flock > /dev/null || flock -n 6 || exit 0
-  [ ! -f "$work/tasks" ] || cancel_all
-  rm -rf "$work"
+  done_with
 }
 
 submit_all() {
@@ -191,8 +197,7 @@ submit_all() {
       file[1] != "demo" { print file[1] ": not made; its job is submitted again (" round ")" }' "$work/missing" >&2
     rm -f "$work"/failed.*
   done
-  [ ! -f "$work/tasks" ] || cancel_all   # a controller that was killed may have put an ended job into the queue again
-  rm -rf "$work"
+  done_with
 }
 
 case $1 in

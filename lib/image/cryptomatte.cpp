@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "lib/image/channel_groups.h"
 #include "lib/image/object_names.h"
 
 namespace tempolux {
@@ -122,6 +123,8 @@ void MatteChannels::describe(Image& image) const {
   image.text[begin + "/conversion"] = "uint32_to_float32";
   image.text[begin + "/manifest"] = "{" + json + "}";
 }
+
+bool has_mattes(const Image& image) { return std::ranges::any_of(image.channels, is_matte, &Channel::name); }
 
 std::vector<MatteLayer> matte_layers_in(const Image& image) {
   std::vector<MatteLayer> layers;

@@ -40,8 +40,8 @@ class MatteChannels {
   /// kMatteRanks of them are stored with their shares of `total`, rounded down to float32, so that the shares of a
   /// pixel never add up to more than 1. Safe for several threads with different pixels.
   void set(std::size_t pixel, std::span<MatteCount> counts, std::uint32_t total);
-  /// Adds the attributes cryptomatte/KEY/name, hash, conversion and manifest. KEY: seven digits of the layer's hash.
-  /// The manifest has the names of this layer that the image shows.
+  /// Adds the attributes cryptomatte/KEY/name, hash, conversion and manifest. KEY is seven digits of the hash of
+  /// the layer's name. The manifest lists the names of this layer that the pixels show.
   void describe(Image& image) const;
 
  private:
@@ -52,11 +52,14 @@ class MatteChannels {
   std::size_t pixels_;
 };
 
+/// True if a channel of the image is a matte (is_matte).
+bool has_mattes(const Image& image);
+
 /// A layer of mattes that attributes describe, ours or another program's.
 struct MatteLayer {
   std::string name;
   std::string manifest;   ///< JSON; "": none
-  std::size_t ranks = 0;  ///< half the number of channels; 0: the image lacks them
+  std::size_t ranks = 0;  ///< half the number of the layer's channels; 0 if the image has none of them
 };
 std::vector<MatteLayer> matte_layers_in(const Image& image);
 

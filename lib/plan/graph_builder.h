@@ -105,12 +105,9 @@ std::string raw_channels(const Wish& wish, const std::string& filtered);
 std::string pixels_of(const GraphBuilder& g, int frame);
 /// The command that renders a frame with these options of its pixels and these channels.
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels);
-/// A hash of the positions and cameras in a frame and its neighbours if `channels` has motion; else "".
-std::string in_motion(const GraphBuilder& g, int frame, const std::string& channels);
-/// A hash of the names of objects and materials if `channels` has mattes; else "".
-inline std::string in_mattes(const GraphBuilder& g, const std::string& channels) {
-  return has_channel(channels, "cryptomatte") ? g.plan.names : "";
-}
+/// What a frame's data channels depend on: a hash of the positions and cameras in the frame and its neighbours if
+/// `channels` has motion, and a hash of the names of objects and materials if `channels` has mattes; else "".
+std::string in_data(const GraphBuilder& g, int frame, const std::string& channels);
 /// The frame whose picture this frame shows: the first frame of the segment with the same picture. If `channels` has
 /// motion, the neighbours of both frames must be the same, too, and the segment's first frame serves only itself,
 /// because its previous frame lies in another segment.

@@ -71,19 +71,18 @@ std::string raw_channels(const Wish& wish, const std::string& filtered) {
       std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
 }
 
-std::string in_motion(const GraphBuilder& g, int frame, const std::string& channels) {
-  if (!has_channel(channels, "motion")) return "";
+std::string in_data(const GraphBuilder& g, int frame, const std::string& channels) {
+  const std::string names = has_channel(channels, "cryptomatte") ? g.plan.names : "";
+  if (!has_channel(channels, "motion")) return names;
   const PlannedFrame &before = g.state(g.clamped(frame - 1)), &here = g.state(frame),
                      &after = g.state(g.clamped(frame + 1));
-  return hash_of_texts({before.light, before.camera, here.light, here.camera, after.light, after.camera});
+  return hash_of_texts({before.light, before.camera, here.light, here.camera, after.light, after.camera}) + names;
 }
 
 std::string pixels_of(const GraphBuilder& g, int frame) { return pixels_with(g, frame, 1); }
 
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels) {
-  Command c{"--frame " + std::to_string(frame),
-            {},
-            g.cameras({frame}) + in_motion(g, frame, channels) + in_mattes(g, channels)};
+  Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_data(g, frame, channels)};
   add_light(g, frame, c);
   for (const std::string& words : {g.size, pixels, "--channels " + channels}) c.option(words);
   c.option(kAudit);
@@ -93,7 +92,7 @@ Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, con
 int shown_by(const GraphBuilder& g, int frame, const std::string& channels) {
   if (!has_channel(channels, "motion")) return g.state(frame).picture;
   for (int f = g.segment(frame).first + 1; f < frame; ++f)
-    if (g.state(f).picture == g.state(frame).picture && in_motion(g, f, channels) == in_motion(g, frame, channels))
+    if (g.state(f).picture == g.state(frame).picture && in_data(g, f, channels) == in_data(g, frame, channels))
       return f;
   return frame;
 }

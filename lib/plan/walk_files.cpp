@@ -72,7 +72,7 @@ std::string walked_picture(GraphBuilder& g, int frame) {
   Command c{"",
             {},
             g.tool_hash("ibr-warp") + (g.wish.filter > 0 ? g.tool_hash("st-filter") : "") + g.cameras({frame}) +
-                in_motion(g, frame, g.wish.channels) + in_mattes(g, g.wish.channels)};
+                in_data(g, frame, g.wish.channels)};
   c.file("", decided_by);
   c.option(frame_digits(frame));
   c.option(g.wish.filter > 0 ? g.wish.channels : "-");

@@ -64,7 +64,8 @@ struct RenderedFrame {
   RayCounts rays;
   RayCounts noise_rays;          ///< rays of the second rendering (NoiseCheck)
   double samples_per_pixel = 0;  ///< mean number of camera rays
-  /// By pixel: number of camera samples. Empty unless asked for, and without pixel_error: mean.samples everywhere.
+  /// Number of camera samples of each pixel. Empty unless FrameOptions::camera_samples is set. Also empty without a
+  /// pixel error, because each pixel then has mean.samples.
   std::vector<std::uint32_t> camera_samples;
   FrameNoise noise;          ///< remaining noise
   double at_limit = 0;       ///< share of the pixels that have reached FrameOptions::adaptive_limit
@@ -76,13 +77,14 @@ struct RenderedFrame {
 /// number of threads.
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
 
-/// Seeds of the camera samples of a frame's pixels: one, or those of the two halves, which have half of the samples.
+/// Seeds of the camera samples of a frame's pixels: one seed, or a seed for each half. Each half has half of the
+/// samples.
 std::vector<std::uint64_t> seeds_of_samples(const FrameOptions& options);
 
 /// Copies pixels with mask 0 from `base`, bit for bit, in every channel of `image` but the mattes. The first
-/// `data_channels` channels of `image` are valid for every pixel; those that `base` lacks stay as they are. Channels
-/// LAYER.noise and halves.confirmed that `base` lacks become 0. Throws InputError if sizes differ or if `base` lacks
-/// another channel.
+/// `data_channels` channels of `image` are valid for every pixel; if `base` lacks such a channel, the channel keeps its
+/// values. Channels LAYER.noise and halves.confirmed that `base` lacks become 0. Throws InputError if sizes differ or
+/// if `base` lacks another channel.
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels,
                       Image& image);
 

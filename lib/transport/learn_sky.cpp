@@ -17,11 +17,12 @@ namespace {
 
 /// Rays of a place: first by the cosine, then as many by what the first ones have found (docs/methods/lights.md).
 constexpr std::uint32_t kRays = 4;
-/// Twice as many first rays, up to kMostRays, if some meet the environment, but too few for a grid on each of six
-/// sides.
+/// Places send twice as many first rays, up to kMostRays, while some rays meet the environment, but fewer than a grid
+/// on each of six sides needs.
 constexpr std::size_t kFewestHits = 6 * SkyGuide::kSearchHits;
 constexpr std::uint32_t kMostRays = 64;
-/// If fewer than one in kFew places has a hit, more rays search. Rooms whose windows have a usual size have more.
+/// If the first rays make fewer hits than one for kFew places, more rays search. Windows of a usual size make more
+/// hits.
 constexpr std::size_t kFew = 16;
 constexpr std::uint64_t kSeed = 0x736b79;
 

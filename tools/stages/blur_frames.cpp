@@ -8,7 +8,7 @@
 
 #include "formats/error.h"
 #include "lib/filter/blur.h"
-#include "lib/image/channel_groups.h"
+#include "lib/image/cryptomatte.h"
 #include "lib/image/exr_io.h"
 #include "lib/scene/scene.h"
 #include "tools/common/cli.h"
@@ -77,7 +77,7 @@ void blur_file(Tool& tool, const Options& options, int number) {
       tool.depends_on(name);
     }
   }
-  if (std::ranges::any_of(image.channels, is_matte, &Channel::name))
+  if (has_mattes(image))
     tool.warn(file + ": cryptomatte is left out, as it is sharp; frame-render --shutter and --f-stop make it blurred");
   const BlurOptions blur = blur_of(options, image, file);
   tool.stats().phase("blur", true);

@@ -1,11 +1,10 @@
 #include "tools/stages/warp_keys.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "formats/error.h"
-#include "lib/image/channel_groups.h"
+#include "lib/image/cryptomatte.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 
@@ -24,7 +23,7 @@ LoadedKey load_key(Tool& tool, const std::string& file) {
       frame != image.numbers.end() && std::abs(frame->second) < 1e8)
     key.frame = int(std::lround(frame->second));
   key.key = std::make_unique<KeyFrame>(image, file, camera_of(image, file));
-  key.has_mattes = std::ranges::any_of(image.channels, is_matte, &Channel::name);
+  key.has_mattes = has_mattes(image);
   key.points = grid_of_points(key.key->seen(), key.key->camera());
   return key;
 }

@@ -9,9 +9,12 @@
 #include "lib/render/shutter.h"
 #include "lib/scene/camera_extras.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/sliding_edge.h"
 
 namespace tempolux {
 namespace {
+
+using test::expected_column;
 
 constexpr int kWidth = 40, kHeight = 20;
 
@@ -100,17 +103,6 @@ TEST(MatteChannels, AnEdgeCoversItsShareOfThePixel) {
     EXPECT_EQ(sum_of_ranks(image, layer, at(3, 5)), 0);
   }
   EXPECT_EQ(image.text.at("cryptomatte/3ae39a5/manifest").substr(0, 8), R"({"Back":)");
-}
-
-/// Share of pixel column x between `left` and `right`, which move by `way` pixels around their places.
-double expected_column(double left, double right, double way, int x) {
-  double sum = 0;
-  const int times = 10000;
-  for (int i = 0; i < times; ++i) {
-    const double by = way * ((i + 0.5) / times - 0.5);
-    sum += std::max(0.0, std::min(right + by, x + 1.0) - std::max(left + by, double(x)));
-  }
-  return sum / times;
 }
 
 /// A square that slides by 8 pixels a frame, with the shutter open for half of it: its matte is a ramp of 4 pixels, and

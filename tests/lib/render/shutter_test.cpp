@@ -7,9 +7,12 @@
 #include "lib/scene/camera_extras.h"
 #include "lib/scene/centre_shutter.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/sliding_edge.h"
 
 namespace tempolux {
 namespace {
+
+using test::expected_column;
 
 /// A film by an orthographic camera at (1, .5, 3), 40 x 20 pixels of 1/20 m.
 struct Film {
@@ -79,17 +82,6 @@ double column(const RenderedFrame& frame, int x) {
 
 /// Over 12 rows of 4096 samples the standard error of a column is below .0025, that of independent samples.
 constexpr double kOff = 0.003;
-
-/// Share of pixel column x that lies between `left` and `right`, while both move by `way` pixels around their places.
-double expected_column(double left, double right, double way, int x) {
-  double sum = 0;
-  const int times = 10000;
-  for (int i = 0; i < times; ++i) {
-    const double by = way * ((i + 0.5) / times - 0.5);
-    sum += std::max(0.0, std::min(right + by, x + 1.0) - std::max(left + by, double(x)));
-  }
-  return sum / times;
-}
 
 /// A square that slides by 8 pixels a frame, with the shutter open for half of it: its edges are ramps of 4 pixels
 /// around their places. 1 m is 20 pixels; at frame 1 the square's left edge is at x = .4 m. Meant to catch: a shutter

@@ -22,6 +22,7 @@ using test::matte;
 using test::place_at;
 
 constexpr Vec3 kUp{0, 1, 0};
+const Material kWall = matte(Rgb(0.5f));
 
 /// A floor of 8 x 8 m below a ceiling at height 3; walls of full height on three sides, and one on the fourth side that
 /// leaves a slit of half a metre below the ceiling, open or behind a pane.
@@ -34,15 +35,19 @@ struct Room {
     sky.radiance.push_back(Rgb(radiance));
     frame.environment = &sky;
   }
-  static HandMadeScene walls(bool pane) {
+  /// The floor, the ceiling and the three walls of full height.
+  static HandMadeScene three_walls() {
     HandMadeScene scene;
-    const Material material = matte(Rgb(0.5f));
-    scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, material);
-    scene.add_quad({-4, 3, -4}, {4, 3, -4}, {4, 3, 4}, {-4, 3, 4}, material);
-    scene.add_quad({-4, 0, -4}, {4, 0, -4}, {4, 3, -4}, {-4, 3, -4}, material);
-    scene.add_quad({-4, 0, 4}, {-4, 0, -4}, {-4, 3, -4}, {-4, 3, 4}, material);
-    scene.add_quad({4, 0, -4}, {4, 0, 4}, {4, 3, 4}, {4, 3, -4}, material);
-    scene.add_quad({4, 0, 4}, {-4, 0, 4}, {-4, 2.5f, 4}, {4, 2.5f, 4}, material);
+    scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, kWall);
+    scene.add_quad({-4, 3, -4}, {4, 3, -4}, {4, 3, 4}, {-4, 3, 4}, kWall);
+    scene.add_quad({-4, 0, -4}, {4, 0, -4}, {4, 3, -4}, {-4, 3, -4}, kWall);
+    scene.add_quad({-4, 0, 4}, {-4, 0, -4}, {-4, 3, -4}, {-4, 3, 4}, kWall);
+    scene.add_quad({4, 0, -4}, {4, 0, 4}, {4, 3, 4}, {4, 3, -4}, kWall);
+    return scene;
+  }
+  static HandMadeScene walls(bool pane) {
+    HandMadeScene scene = three_walls();
+    scene.add_quad({4, 0, 4}, {-4, 0, 4}, {-4, 2.5f, 4}, {4, 2.5f, 4}, kWall);
     if (pane) scene.add_quad({4, 2.5f, 4}, {-4, 2.5f, 4}, {-4, 3, 4}, {4, 3, 4}, test::glass(0, true));
     return scene;
   }
@@ -110,22 +115,16 @@ TEST(LearnSky, IrradianceIsThatOfLightSamples) {
 
 /// A room of the same size with a window of .3 x .3 m, which one of 2000 rays of the floor meets: four rays of each
 /// place make seven hits. The window is small, so the irradiance is L A cos cos' / d^2 within (.3 / d)^2. A sample that
-/// always meets the window has a relative deviation below 1; a quarter of the samples of the sky and a quarter of the
-/// grid are drawn elsewhere, and the grid is wider than the window. Without the search the deviation is 100.
+/// always meets the window has a relative deviation below 1. Three quarters of the samples come from a grid, and half
+/// of these samples shall meet the window. Seen to fail: no search, the median deviation is 50.
 TEST(LearnSky, FindsASmallWindow) {
-  Room room;
-  HandMadeScene scene;
-  const Material material = matte(Rgb(0.5f));
-  scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, material);
-  scene.add_quad({-4, 3, -4}, {4, 3, -4}, {4, 3, 4}, {-4, 3, 4}, material);
-  scene.add_quad({-4, 0, -4}, {4, 0, -4}, {4, 3, -4}, {-4, 3, -4}, material);
-  scene.add_quad({-4, 0, 4}, {-4, 0, -4}, {-4, 3, -4}, {-4, 3, 4}, material);
-  scene.add_quad({4, 0, -4}, {4, 0, 4}, {4, 3, 4}, {4, 3, -4}, material);
+  const Room room;
+  HandMadeScene scene = Room::three_walls();
   const float low = 1.5f, high = 1.8f, half = 0.15f;
-  scene.add_quad({4, 0, 4}, {-4, 0, 4}, {-4, low, 4}, {4, low, 4}, material);
-  scene.add_quad({4, high, 4}, {-4, high, 4}, {-4, 3, 4}, {4, 3, 4}, material);
-  scene.add_quad({4, low, 4}, {half, low, 4}, {half, high, 4}, {4, high, 4}, material);
-  scene.add_quad({-half, low, 4}, {-4, low, 4}, {-4, high, 4}, {-half, high, 4}, material);
+  scene.add_quad({4, 0, 4}, {-4, 0, 4}, {-4, low, 4}, {4, low, 4}, kWall);
+  scene.add_quad({4, high, 4}, {-4, high, 4}, {-4, 3, 4}, {4, 3, 4}, kWall);
+  scene.add_quad({4, low, 4}, {half, low, 4}, {half, high, 4}, {4, high, 4}, kWall);
+  scene.add_quad({-half, low, 4}, {-4, low, 4}, {-4, high, 4}, {-half, high, 4}, kWall);
   SceneFrame frame = scene.frame();
   frame.environment = &room.sky;
   const Tracer tracer(frame);
