@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/error.h"
+#include "lib/pilot/hidden_light.h"
 #include "lib/core/random.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
@@ -127,6 +128,9 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   const std::unique_ptr<const Shutter> shutter =
       open_shutter(tool, options, {input.scene(), input.time(), camera, scene, view});
   frame_options.shutter = shutter.get();
+  // Light paths know the middle of the shutter alone.
+  if (!shutter && options.light_paths > 0 && light_paths_find(frame, input.emission(number)))
+    lit.leave_out_hidden_light();
   tool.stats().phase("render", true);
   if (!is_reference) frame_options.known = &lit.light().get();
   Image image{options.width, options.height, {}, {}, {}, {}};
