@@ -37,8 +37,9 @@ def said_in_codes(said, picture, seen):
     slope at the mean."""
     mean = max(1e-30, picture * seen.exposure)
     slope = 255 * (12.92 if mean < 0.0031308 else 1.055 / 2.4 * mean ** (1 / 2.4 - 1))
-    biases = sum(value for name, value in said.items() if name.startswith("audit.") and not name.endswith("_error")
-                 and abs(value) > 3 * said.get(name + "_error", math.inf))
+    layers = (f"audit.{layer}" for layer in pixels.LAYERS if layer != "direct")
+    found = ((said.get(name, 0), said.get(name + "_error", math.inf)) for name in layers)
+    biases = sum(value for value, error in found if abs(value) > max(0.02, 3 * error))      # those that a frame warns of
     return math.hypot(said.get("noise.codes") or 0, biases * mean * slope)
 
 
