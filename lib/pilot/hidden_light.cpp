@@ -38,8 +38,8 @@ double hidden_share(const RenderScene& scene, const Lights& without_extent, cons
   return sure ? hidden.mean / (picture > 0 ? picture : hidden.mean) : 0;
 }
 
-void add_hidden_light(const RenderScene& scene, const Lights& lamps, const CameraView& view,
-                      std::uint64_t paths, std::uint64_t seed, LayerImage& picture) {
+void add_hidden_light(const RenderScene& scene, const Lights& lamps, const CameraView& view, std::uint64_t paths,
+                      std::uint64_t seed, LayerImage& picture) {
   const PhotonOptions options{
       .seed = seed, .photon_count = paths, .group_count = 1, .store_direct = false, .first_event_smooth = true};
   const PhotonTracer photons(scene.tracer, lamps, options);

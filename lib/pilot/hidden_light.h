@@ -12,8 +12,8 @@ namespace tempolux {
 /// True if a light without extent (point, spot, sun) shines and some material is a mirror or smooth glass.
 bool may_hide_light(const SceneFrame& frame);
 
-/// True if add_hidden_light() can find light: some lamp shines, with extent or without, and some material is a mirror or
-/// smooth glass.
+/// True if add_hidden_light() can find light: some lamp shines, with extent or without, and some material is a mirror
+/// or smooth glass.
 bool light_paths_find(const SceneFrame& frame, const EmissionTable& table);
 
 /// Mean radiance of the visible caustic light from these lights, estimated by kPilotPaths light paths, over the mean
@@ -29,7 +29,7 @@ double hidden_share(const RenderScene& scene, const Lights& without_extent, cons
 /// picture, else of Lights::Which::punctual. Unbiased in each pixel. It does not find the light of lamps without extent
 /// where the camera looks through mirrors, glass or gloss (layer specular), or in media (layer volume). Same result for
 /// any number of threads.
-void add_hidden_light(const RenderScene& scene, const Lights& lamps, const CameraView& view,
-                      std::uint64_t paths, std::uint64_t seed, LayerImage& picture);
+void add_hidden_light(const RenderScene& scene, const Lights& lamps, const CameraView& view, std::uint64_t paths,
+                      std::uint64_t seed, LayerImage& picture);
 
 }  // namespace tempolux

@@ -10,7 +10,8 @@
 namespace tempolux::tools {
 
 struct PlanOptions {
-  std::string scene, folder = "out", estimate, quality = "final", method = "auto", filter = "auto", report, measured;
+  std::string scene, folder = "out", estimate, quality = "final", method = "auto", filter = "auto", report, measured,
+                     shot;
   std::vector<std::string> recipes, words;
   double aqm = -1;  ///< share of pixels in which a viewer may see errors; below 0: the preset's
   Wish wish;

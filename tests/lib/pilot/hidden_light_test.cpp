@@ -41,7 +41,8 @@ struct UnderAMirror {
   static UnderAMirror with_square() {
     UnderAMirror room(mirror(), 0);
     constexpr float r = kSide / 2;
-    room.scene.add_quad({-r, -r, 1.5f}, {r, -r, 1.5f}, {r, r, 1.5f}, {-r, r, 1.5f}, one_sided(Rgb(1 / (kSide * kSide))));
+    room.scene.add_quad({-r, -r, 1.5f}, {r, -r, 1.5f}, {r, r, 1.5f}, {-r, r, 1.5f},
+                        one_sided(Rgb(1 / (kSide * kSide))));
     return room;
   }
   static constexpr float kSide = 0.02f;
