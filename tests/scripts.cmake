@@ -10,6 +10,11 @@ add_executable(tool-probe cli/probe.cpp)
 target_link_libraries(tool-probe PRIVATE tempolux_options tempolux_tool_main)
 set_target_properties(tool-probe PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 
+# Preloaded into a tool, it lets calls that write fail (write_errors_check.sh).
+add_library(fail-write MODULE cli/fail_write.cpp)
+target_link_libraries(fail-write PRIVATE ${CMAKE_DL_LIBS})
+set_target_properties(fail-write PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+
 file(GLOB cli_scripts CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} cli/*_check.sh)
 foreach(script ${cli_scripts})
   get_filename_component(name ${script} NAME_WE)

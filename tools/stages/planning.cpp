@@ -119,7 +119,9 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
   decided_.push_back(name);
   const std::string kept = content_of(path_ + "/" + name + ".decided");
-  if (!kept.empty()) return read_decisions(kept);
+  if (!kept.empty()) try {
+      return read_decisions(kept);
+    } catch (const InputError&) {}  // a damaged file is made again
   const Decisions decided = decide();
   write_whole(path_ + "/" + name + ".decided", decisions_text(decided));
   return decided;
