@@ -11,7 +11,6 @@ their ratio; `!` above 1.3, `!!` above 3: silently wrong. Layers: chain over ref
 errors, where they differ by more. Asked: 90 % of the ratios below 1.3, none above 3.
 """
 import argparse
-import json
 import math
 import statistics
 import sys
@@ -74,15 +73,43 @@ def ratio(row):
     return max(LEAST, row["seen"]) / max(LEAST, row["said"])
 
 
-def line(row):
+HEADER = ["scene", "kind", "extreme", "CPU s", "seen", "said", "ratio", "layers that differ"]
+
+
+def cells(row):
     if "refused" in row:
-        return f"{row['scene']:12} {row['note']:24} {row['refused']}"
+        return [row["scene"], row["kind"], row["note"], "", "", "", "", row["refused"]]
     off = ", ".join(f"{layer} {100 * d:+.1f}±{100 * e:.1f}" for layer, (d, e) in row["off"].items())
     mark = "" if row["converged"] else "?"
     mark += "!!" if ratio(row) > LIMITS[1] else "!" if ratio(row) > LIMITS[0] else ""
     finite = f" NOT FINITE {row['not_finite']}" if row["not_finite"] else ""
-    return (f"{row['scene']:12} {row['kind']:7} {row['note']:24} {row['cpu_s']:6.1f} CPU s  seen {row['seen']:6.2f}  said {row['said']:6.2f}  "
-            f"ratio {ratio(row):5.2f}{mark:3}  {off}{finite}")
+    return [row["scene"], row["kind"], row["note"], f"{row['cpu_s']:.1f}", f"{row['seen']:.2f}", f"{row['said']:.2f}", f"{ratio(row):.2f}{mark}", off + finite]
+
+
+def rows(bench, numbers, size, patience, reference_cpu):
+    """Rows of these scenes, each printed when it is known."""
+    found = []
+    for number in numbers:
+        file, kind, options, extremes = random_scenes.make(bench.out / "random", number)
+        case = Case(file.stem, file, 2, kind, shared=tuple(options), note=" ".join(extremes))
+        try:
+            row = measured(bench, case, size, patience, reference_cpu)
+        except (Unfinished, RuntimeError) as reason:
+            row = {"scene": case.name, "kind": kind, "note": case.note, "refused": str(reason)[:300]}
+        found.append(row)
+        print(" | ".join(cells(row)), flush=True)
+    return found
+
+
+def summary(rows):
+    """(frames within the first limit, frames judged, names of those above the second limit, a sentence)"""
+    good = [row for row in rows if "refused" not in row]
+    judged = [row for row in good if row["converged"]]
+    within = sum(ratio(row) <= LIMITS[0] for row in judged)
+    wrong = [row["scene"] for row in judged if ratio(row) > LIMITS[1]]
+    return within, len(judged), wrong, (
+        f"{len(rows)} scenes: {len(rows) - len(good)} refused or black, {len(good) - len(judged)} references not converged; of {len(judged)} judged {within} within "
+        f"{LIMITS[0]}, above {LIMITS[1]}: {', '.join(wrong) or 'none'}; median ratio {statistics.median(map(ratio, judged or good)):.2f}.")
 
 
 def main():
@@ -97,28 +124,9 @@ def main():
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     first, _, last = args.scenes.partition("-")
-    numbers = range(int(first), int(last) + 1) if last else map(int, args.scenes.split(","))
-    kept, rows = bench.out / "random.json", {}
-    if kept.exists():
-        rows = {row["scene"]: row for row in json.loads(kept.read_text())}
-    for number in numbers:
-        file, kind, options, extremes = random_scenes.make(bench.out / "random", number)
-        case = Case(file.stem, file, 2, kind, shared=tuple(options), note=" ".join(extremes))
-        try:
-            row = measured(bench, case, args.size, args.patience, args.reference_cpu)
-        except (Unfinished, RuntimeError) as reason:
-            row = {"scene": case.name, "kind": kind, "note": case.note, "refused": str(reason)[:300]}
-        rows[case.name] = row
-        print(line(row), flush=True)
-        kept.write_text(json.dumps(list(rows.values()), indent=1))
-    good = [row for row in rows.values() if "refused" not in row]
-    judged = [row for row in good if row["converged"]]
-    within = sum(ratio(row) <= LIMITS[0] for row in judged)
-    wrong = [row["scene"] for row in judged if ratio(row) > LIMITS[1]]
-    print(f"{len(rows)} scenes: {len(rows) - len(good)} refused or black, {len(good) - len(judged)} references not converged; "
-          f"of {len(judged)} judged {within} within {LIMITS[0]}, above {LIMITS[1]}: {', '.join(wrong) or 'none'}; "
-          f"median ratio {statistics.median(map(ratio, judged or good)):.2f}")
-    pictures = [file for row in good for file in row["shown"]]
+    found = rows(bench, range(int(first), int(last) + 1) if last else map(int, args.scenes.split(",")), args.size, args.patience, args.reference_cpu)
+    print(summary(found)[-1])
+    pictures = [file for row in found for file in row.get("shown", [])]
     bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "random.png", "--columns", 8, "--exposure", 0, *pictures])
     print(f"pictures, reference and frame: {bench.out / 'random.png'}")
 

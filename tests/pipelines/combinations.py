@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""All pairs of what a user can ask for, in a small scene: combinations.py BIN [--every N] [--page FILE] [--keep FOLDER]
+"""All pairs of what a user can ask for, in a small scene: combinations.py BIN [--every N] [--keep FOLDER]
 
 Run at the top of the tree; BIN is the folder with the tools. A closed room with a lamp under its ceiling, a box that
 moves and a camera on a dolly, frames 1 to 3. Each pair is rendered by make, and the mean of each frame is compared with
 path tracing that has the same shutter, lens and smoke. A pair is right if the difference is below 2 % (METHOD=preview:
 10 %, since a preview is rough) and 4 standard errors of the path-traced mean, and no pixel is NaN or infinite. Or it is
-refused with one line and exit code 2. `--every N`: each Nth pair, a short form. `--page`: the table as Markdown.
+refused with one line and exit code 2. `--every N`: each Nth pair, a short form. The whole table:
+`make evidence PARTS=combinations`.
 """
 import argparse
 import itertools
@@ -144,53 +145,47 @@ class Runner:
         return f"right: {100 * most:+.1f} %"
 
 
-def page(rows, skipped):
+def table(rows):
+    """(header, rows of cells, notes on what is refused): a cell for each pair."""
     names = list(ASKED)
-    cells = {frozenset(pair): verdict for pair, verdict in rows}
-    notes = []
+    cells, notes = {frozenset(pair): verdict for pair, verdict in rows}, []
 
     def cell(a, b):
         verdict = cells.get(frozenset((a, b)), "")
-        if verdict.startswith("refused"):
-            notes.append(f"{a} and {b}: {verdict}")
-            return f"refused ({len(notes)})"
-        return verdict.removeprefix("right: ")
-    table = ["| | " + " | ".join(names[:-1]) + " |", "|---" * len(names) + "|"]
-    table += ["| " + " | ".join([b, *(cell(a, b) if a != b else "" for a in names[:i]), *[""] * (len(names) - 1 - i)]) + " |" for i, b in enumerate(names) if i]
-    alone = "; ".join(f"{name} {cells[frozenset((name,))].removeprefix('right: ')}" for name in names if frozenset((name,)) in cells)
-    return "\n".join([
-        "# Combinations", "", "    python3 -B tests/pipelines/combinations.py build/release/bin --page docs/results/combinations.md", "",
-        "Each pair of what can be asked for, in a small room with a box that moves and a camera on a dolly: frames 1 to 3 at",
-        f"{SIZE}, rendered by make. A number: the largest difference of a frame's mean to path tracing ({SAMPLES} samples a pixel) with the same",
-        f"shutter, lens and smoke. It is below {100 * LIMIT:.0f} % (preview: {100 * OF_PREVIEW:.0f} %, since a preview is rough) and 4 standard errors; else the cell says",
-        "FAIL. *One variable*: both are values of this variable of Makefile.example, so that they exclude each other.", "",
-        f"Alone: {alone}.", "", *table, "", *(f"{i}. {note}" for i, note in enumerate(notes, 1)), *skipped, ""])
+        if not verdict.startswith("refused"):
+            return verdict.removeprefix("right: ")
+        notes.append(f"({len(notes) + 1}) {a} and {b}: {verdict}")
+        return f"refused ({len(notes)})"
+    found = [[b, *(cell(a, b) for a in names[: i + 1]), *[""] * (len(names) - 1 - i)] for i, b in enumerate(names)]
+    return ["", *names], found, notes
+
+
+def verdicts(tools, folder, every=1):
+    """[(pair, verdict)] of each `every`-th pair; without make-vdb there is no smoke."""
+    make_scene(folder)
+    runner = Runner(tools, folder)
+    if not make_smoke(tools, folder):
+        ASKED.pop("smoke", None)
+    pairs = [(name,) for name in ASKED] + list(itertools.combinations(ASKED, 2))
+    for pair in pairs[::every]:
+        yield pair, runner.verdict(pair)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin", type=Path)
     parser.add_argument("--every", type=int, default=1, metavar="N", help="each Nth pair")
-    parser.add_argument("--page", type=Path, help="write the table to this file")
     parser.add_argument("--keep", type=Path, help="work in this folder and keep it")
     args = parser.parse_args()
     folder = args.keep or Path(tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        make_scene(folder)
-        runner, skipped = Runner(args.bin.resolve(), folder), []
-        if not make_smoke(args.bin.resolve(), folder):
-            del ASKED["smoke"]
-            skipped = ["Built without volumes: no row for smoke."]
-        pairs = [(name,) for name in ASKED] + list(itertools.combinations(ASKED, 2))
         rows = []
-        for pair in pairs[:: args.every]:
-            rows.append((pair, runner.verdict(pair)))
-            print(f"{' + '.join(pair):32} {rows[-1][1]}", flush=True)
-        failed = [row for row in rows if row[1].startswith("FAIL")]
+        for pair, verdict in verdicts(args.bin.resolve(), folder, args.every):
+            rows.append((pair, verdict))
+            print(f"{' + '.join(pair):32} {verdict}", flush=True)
+        failed = [verdict for _, verdict in rows if verdict.startswith("FAIL")]
         print(f"{len(rows)} pairs, {len(failed)} failed")
-        if args.page:
-            args.page.write_text(page(rows, skipped))
         sys.exit(1 if failed else 0)
     finally:
         if not args.keep:
