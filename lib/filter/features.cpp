@@ -14,8 +14,7 @@ namespace {
 constexpr std::array<const char*, Features::kCount> kNames{"N.X",      "N.Y",      "N.Z",     "inverse_Z",
                                                            "albedo.R", "albedo.G", "albedo.B"};
 
-/// The mean has the channel coverage.mean.NAME, but albedo, which is a mean itself, has its own.
-std::string mean_name(const std::string& name) { return name.starts_with("albedo") ? name : "coverage.mean." + name; }
+std::string mean_name(const std::string& name) { return "coverage.mean." + name; }
 std::string error_name(const std::string& name) { return "coverage.error." + name; }
 
 }  // namespace

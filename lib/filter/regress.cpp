@@ -195,7 +195,6 @@ class Regression {
           noise[f] = multiply_add(w, load8(features_.variance[f].row(y + dy) + x + dx), noise[f]);
       }
     const Terms solved = first_column_of_inverse(gram, noise, own);
-    Float8 total{};
     tap = 0;
     for (int dy = -kFitRadius; dy <= kFitRadius; ++dy)
       for (int dx = -kFitRadius; dx <= kFitRadius; ++dx, ++tap) {
@@ -203,7 +202,6 @@ class Regression {
         Float8 kernel = solved[0];
         for (std::size_t i = 1; i < kTerms; ++i) kernel = multiply_add(solved[i], t[i], kernel);
         weight[tap] *= kernel;
-        total += weight[tap];
       }
     for (std::size_t l = 0; l < from_.half[h].layers.size(); ++l)
       for (std::size_t c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// lib/filter/regress.h -- the filter for blurred frames: fits the light around each pixel by what the pixels show.
+// lib/filter/regress.h -- fits the light around each pixel to what the pixels show: normal, depth and albedo.
 #pragma once
 
 #include <vector>

@@ -328,6 +328,7 @@ TEST(Filter, TilesAreNotSeen) {
       for (const char* name : {"N.X", "N.Y", "N.Z", "inverse_Z"})
         plane(frame, std::string("coverage.mean.") + name, share);
       grey(frame, "albedo", everywhere(0.5f));
+      grey(frame, "coverage.mean.albedo", everywhere(0.5f));
     }
     const Image whole = filtered({frame}), tiled = filter_alone(frame);
     for (std::size_t p = 0; p < frame.pixel_count(); ++p)

@@ -32,6 +32,7 @@ Image soft_frame(const test::OfPixel& share) {
   plane(image, "coverage.mean.N.Z", mixed(1, 0));
   plane(image, "coverage.mean.inverse_Z", mixed(1, 0.25f));
   test::grey(image, "albedo", mixed(0.8f, 0.2f));
+  test::grey(image, "coverage.mean.albedo", mixed(0.8f, 0.2f));
   return image;
 }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "lib/render/blurred_means.h"
+#include "lib/render/feature_means.h"
 #include "lib/render/data_channels.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/scene/camera_extras.h"
@@ -269,7 +269,7 @@ TEST(Shutter, MeansOfASlidingEdgeAreARamp) {
   film.at_frame_1([&](const Shutter* shutter, const RenderScene& lit, const CameraView& view) {
     Image image{40, 20, {}, {}, {}, {}};
     add_data_channels(lit, view, {"N", "albedo"}, {}, {}, image);
-    add_blurred_means(lit, view, shutter, {"coverage"}, image);
+    add_feature_means(lit, view, shutter, {}, {"coverage"}, image);
     const auto mean = [&](const char* name, int x) {
       double sum = 0;
       for (int y = 4; y < 16; ++y) sum += double(image.find(name)->values[std::size_t(40 * y + x)]) / 12;
