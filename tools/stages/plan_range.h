@@ -9,6 +9,10 @@
 
 namespace tempolux::tools {
 
+inline constexpr const char* kShotHelp =
+    "frames of the shot, which decides about light and kept pixels whatever frames are asked for; without: all frames "
+    "of the animation";
+
 struct PlanOptions {
   std::string scene, folder = "out", estimate, quality = "final", method = "auto", filter = "auto", report, measured,
                      shot;
