@@ -57,7 +57,7 @@ set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channel
 for pair in update:UPDATE refine:REFINE photons:PHOTONS pixel-error:ERROR halve-above:THRESHOLD \
   light-units:LIGHT_UNITS environment:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
   volume:VOLUME exposure:EXPOSURE f-stop:FSTOP focus:FOCUS sensor-width:SENSOR_WIDTH \
-  shutter:SHUTTER shutter-open:SHUTTER_OPEN; do
+  shutter:SHUTTER shutter-open:SHUTTER_OPEN shot:SHOT; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
 done

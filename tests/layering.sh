@@ -10,7 +10,7 @@ forbid lib 'tools/|CLI/|iostream' 'lib has no command line and prints nothing'
 forbid modules 'tools/|CLI/' 'a module knows no tool'
 # inside lib: folder, what it may include of lib
 may() {
-  others=$(grep -rhoE --include='*.h' --include='*.cpp' '^ *#include "lib/[a-z]+/' "lib/$1" 2>/dev/null | sed 's|.*"lib/||; s|/$||' | sort -u)
+  others=$(grep -rhoE --include='*.h' --include='*.cpp' '^ *#include "lib/[a-z_]+/' "lib/$1" 2>/dev/null | sed 's|.*"lib/||; s|/$||' | sort -u)
   for other in $others; do
     case " $1 $2 " in *" $other "*) ;; *) echo "lib/$1 includes lib/$other: not one of its arrows ($2)"; bad=1;; esac
   done
@@ -29,11 +29,11 @@ may irradcache 'core density'
 may points   'core volume scene trace material light transport density irradcache'
 may light_texture 'core scene trace irradcache'
 may gather   'core volume scene trace material light transport density irradcache points'
-may temporal 'core scene trace light irradcache points gather'
+may temporal 'core scene trace light irradcache points light_texture gather'
 may render   'core volume image scene trace material light transport photon density irradcache points light_texture gather'
 may audit    'core volume scene trace material light transport photon density points render'
 may pilot    'core image scene trace material light transport photon density irradcache points light_texture gather render audit'
-may compose  'core volume image scene trace light transport points gather render'
+may compose  'core volume image scene trace light transport points light_texture gather render'
 may warp     'core image volume scene trace material render'
 may aqm      'core image'
 may filter   'core image'

@@ -10,6 +10,11 @@ add_executable(tool-probe cli/probe.cpp)
 target_link_libraries(tool-probe PRIVATE tempolux_options tempolux_tool_main)
 set_target_properties(tool-probe PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 
+# Preloaded into a tool, it lets calls that write fail (write_errors_check.sh).
+add_library(fail-write MODULE cli/fail_write.cpp)
+target_link_libraries(fail-write PRIVATE ${CMAKE_DL_LIBS})
+set_target_properties(fail-write PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+
 file(GLOB cli_scripts CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} cli/*_check.sh)
 foreach(script ${cli_scripts})
   get_filename_component(name ${script} NAME_WE)
@@ -33,6 +38,8 @@ foreach(format paths meshirrad)
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()
 
+add_test(NAME formats.minor_versions COMMAND python3 -B formats/minor_versions.py WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+
 # Ideas that the ablation leaves out still stand in the source as it has them: one that is gone leaves tests/bench/ablation_ideas.py.
 add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 
@@ -54,6 +61,9 @@ set_tests_properties(pipelines.from_blender pipelines.from_blender_module PROPER
 add_test(NAME pipelines.blender_mattes COMMAND sh -c "[ -x build/peers/bpy/bin/python ] || exit 77; exec build/peers/bpy/bin/python -B tests/pipelines/blender_mattes.py $<TARGET_FILE_DIR:scene-plan>"
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.blender_mattes PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
+# All pairs are measured by `make evidence PARTS=combinations`; each twentieth here.
+add_test(NAME pipelines.combinations COMMAND python3 -B tests/pipelines/combinations.py $<TARGET_FILE_DIR:scene-plan> --every 20 WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.combinations PROPERTIES TIMEOUT 300)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.
 add_test(NAME pipelines.known_walks COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --known WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.random_walk COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --steps 40

@@ -95,11 +95,9 @@ void add_options(tools::Tool& tool, Options& options) {
                      "shadow rays per point for direct light; 0: 4, or 16 where light of sun and sky passes openings");
   tool.number_option("--rays", options.gather.rays, 1, 1 << 20,
                      "gather rays per record, one through each cell of its hemisphere");
-  tool.number_option(
-      "--error-bound", options.placement.error_bound, 1e-3, 2.0,
-      "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
-      "values give more records. A record counts where normals differ by less than 50 degrees times this "
-      "value, but at least 5 and at most 20 degrees");
+  tool.number_option("--error-bound", options.placement.error_bound, 1e-3, 2.0,
+                     "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
+                     "values give more records");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();

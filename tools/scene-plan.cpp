@@ -90,6 +90,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
        "with smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%");
   app.add_option("--strategy", wish.strategy, "groups of photons that --update traces, as photon-trace --strategy")
       ->capture_default_str();
+  text("--shot", options.shot, "FIRST-LAST", tools::kShotHelp);
   tool.number_option("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
   app.add_option("--halve-above", wish.threshold,
                  "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
@@ -130,7 +131,6 @@ int main(int argc, char** argv) {
                      "Makefile.example estimate)")
           ->type_name("FOLDER"));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
-
   // `shot`: the words without kNotOfShot.
   std::string arguments = std::filesystem::current_path().string(), shot;
   for (int i = 1; i < argc; ++i) {

@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::array kVolume{"volume.R", "volume.G", "volume.B"}, kColour{"R", "G", "B"};
 
-/// True for R, G, B of the frame and of its layers, but not for albedo and mattes.
+/// True for R, G, B of the frame and of its layers, but not for albedo, its error and mattes.
 bool is_light(const Channel& channel) {
   const std::string& name = channel.name;
   const bool rgb = name.ends_with('R') || name.ends_with('G') || name.ends_with('B');
   return rgb && !channel.values.empty() && (name.size() == 1 || name[name.size() - 2] == '.') &&
-         !name.starts_with("albedo") && !is_matte(name);
+         !name.starts_with("albedo") && !name.starts_with("coverage") && !is_matte(name);
 }
 
 }  // namespace

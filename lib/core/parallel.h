@@ -1,4 +1,4 @@
-// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB (parallel_threads.cpp is a version without
+// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB in lib and tools (parallel_threads.cpp is a version without
 // TBB).
 //
 // Work is cut into chunks by count, never by the number of threads, and results are joined in chunk order: the same

@@ -11,6 +11,7 @@
 #include "lib/filter/fit.h"
 #include "lib/filter/remaining_noise.h"
 #include "lib/filter/picture.h"
+#include "lib/filter/regress.h"
 #include "lib/filter/resolve.h"
 #include "lib/filter/rows.h"
 #include "lib/filter/unmix.h"
@@ -47,6 +48,11 @@ class Candidates {
     for (std::size_t h = 0; h < 2; ++h) other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted[h]);
     if (frames > 1) add_candidate(collected, other);
     add_candidate(fitted, other);
+  }
+  /// Adds candidates of radiance, by layer.
+  void add(std::vector<Halves> radiance) {
+    for (std::size_t l = 0; l < radiance.size(); ++l)
+      if (!radiance[l].a[0].empty()) of_layer_[l].push_back(std::move(radiance[l]));
   }
   const std::vector<Halves>& of(std::size_t layer) const { return of_layer_[layer]; }
 
@@ -126,6 +132,7 @@ struct FrameFilter::State {
     Candidates candidates(group, coverage);
     candidates.add(group.raw, 1);
     if (g == 0 && collectors[0]) candidates.add({collectors[0]->take(), collectors[1]->take()}, int(1 + added));
+    if (const Features features(image); features.known()) candidates.add(regress(image, group, features));
     std::vector<std::uint8_t> kinds(image.pixel_count());
     for (int y = 0; y < on.height; ++y)
       for (int x = 0; x < on.width; ++x)

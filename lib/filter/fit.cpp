@@ -12,9 +12,6 @@
 namespace tempolux {
 namespace {
 
-/// Adds kPull times the sum of weights to the second moments, which pulls slopes towards 0. The slopes are then unique
-/// even if all pixels of a window are in one column.
-constexpr float kPull = 0.02f;
 constexpr float kPlane = 3;  ///< variance of a fitted plane's value over the variance of a mean
 /// Sums of weight, weight dx ... over the window, for eight pixels at once.
 struct Moments {

@@ -29,6 +29,10 @@ BothHalves fit(const Surfaces& surfaces, const BothHalves& from, const BothHalve
 /// if there are none.
 Plane smoothed(const Surfaces& surfaces, const Plane& values);
 
+/// Fits add kPull times the sum of weights to the second moments, which pulls slopes towards 0. The slopes are then
+/// unique even if all pixels of a window are in one column.
+inline constexpr float kPull = 0.02f;
+
 /// Weight of a value for the mean at another value, by their difference: Tukey's biweight, which is 0 from five
 /// standard errors on. `square` is the squared difference, `variance` the variance of the difference.
 inline constexpr float kValueErrors = 5, kTinyVariance = 1e-30f;

@@ -30,7 +30,7 @@ struct IrradiancePoint {
   Rgb total() const { return direct + caustic + indirect; }
 };
 
-/// Computes the clearance of a place up to `reach` [m]: lib/gather's point_clearance().
+/// Computes the clearance of a place up to `reach` [m]: point_clearance() in lib/points/irradiance_points.h.
 using ClearanceTest = std::function<Clearance(Vec3 position, Vec3 normal, float reach)>;
 
 /// Finds the point that represents a hit: a point that faces the same way, lies in the same plane, and from which the

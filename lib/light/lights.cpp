@@ -31,6 +31,7 @@ bool Lights::shines(std::size_t slot) const {
     case Which::placed: return !is_distant(slot);
     case Which::distant: return is_distant(slot);
     case Which::punctual: return slots_[slot].light != kNone;
+    case Which::lamps: return slots_[slot].kind != EmissionSlot::Kind::environment;
     default: return true;
   }
 }

@@ -77,8 +77,8 @@ std::string emission_hash(const EmissionTable& table, const Segment& segment);
 class Lights {
  public:
   /// The lights that shine. all: every light. placed: triangles, point lights and spot lights. distant: directional
-  /// lights and the environment. punctual: point, spot and directional lights.
-  enum class Which : std::uint8_t { all, placed, distant, punctual };
+  /// lights and the environment. punctual: point, spot and directional lights. lamps: all but the environment.
+  enum class Which : std::uint8_t { all, placed, distant, punctual, lamps };
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);

@@ -25,6 +25,11 @@ bool may_hide_light(const SceneFrame& frame) {
          first_smooth_material(frame) != kNone;
 }
 
+bool light_paths_find(const SceneFrame& frame, const EmissionTable& table) {
+  const Lights lamps(frame, table, Lights::Which::lamps);
+  return (lamps.has_placed() || lamps.has_suns()) && first_smooth_material(frame) != kNone;
+}
+
 double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture,
                     double least) {
   const formats::PhotonBlock photons = pilot_photons(scene.tracer, without_extent, "caustic", kPilotPaths, 0);
@@ -33,11 +38,11 @@ double hidden_share(const RenderScene& scene, const Lights& without_extent, cons
   return sure ? hidden.mean / (picture > 0 ? picture : hidden.mean) : 0;
 }
 
-void add_hidden_light(const RenderScene& scene, const Lights& without_extent, const CameraView& view,
-                      std::uint64_t paths, std::uint64_t seed, LayerImage& picture) {
+void add_hidden_light(const RenderScene& scene, const Lights& lamps, const CameraView& view, std::uint64_t paths,
+                      std::uint64_t seed, LayerImage& picture) {
   const PhotonOptions options{
       .seed = seed, .photon_count = paths, .group_count = 1, .store_direct = false, .first_event_smooth = true};
-  const PhotonTracer photons(scene.tracer, without_extent, options);
+  const PhotonTracer photons(scene.tracer, lamps, options);
   const PhotonSplats camera(scene.tracer, view, scene.camera_inside);
   std::vector<LayersT<double>> sums(picture.pixels.size());
   std::vector<std::vector<Splat>> seen(kBatchesAtOnce);

@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <vector>
-#include <vector>
 
 #include "lib/audit/audit.h"
 #include "lib/light/aim.h"

@@ -1,6 +1,7 @@
 // lib/plan/decisions.h -- a user's wish and the decisions for a segment.
 #pragma once
 
+#include <array>
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
@@ -76,6 +77,7 @@ struct Wish {
   std::vector<int> report;     ///< frames that are compared with path tracing
   std::string common;          ///< options of all stages that change content: --fps, --volume ... (only hashed)
   std::string camera;          ///< name of the camera, or auto (only hashed)
+  std::optional<std::array<int, 2>> shot;  ///< first and last frame of the shot; empty: those of the animation
 
   /// Largest share of pixels in which a viewer may see errors (AQM) in pictures of this quality.
   double seen() const { return quality == Quality::draft ? 0.2 : 0.05; }

@@ -212,14 +212,12 @@ int last_change(const Scene& scene, const TimeOptions& options) {
                   1'000'000'000);
 }
 
-/// The segments at the first frame, the middle and the last frame of the animation, each once.
+/// The segments at the first frame, the middle and the last frame of the shot, each once.
 std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan, int camera_node,
                                            const MediaHash& media) {
   std::vector<PlannedSegment> pieces;
   if (media) return pieces;
-  const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), plan.time);
-  const bool endless = last == std::numeric_limits<int>::max();
-  for (const int frame : {0, endless ? 0 : last / 2, endless ? 0 : last}) {
+  for (const int frame : {plan.shot_frames[0], plan.middle_of_shot(), plan.shot_frames[1]}) {
     if (!pieces.empty() && frame <= pieces.back().last) continue;
     const auto known = std::ranges::find_if(plan.segments, [&](const PlannedSegment& s) { return s.holds(frame); });
     pieces.push_back(known != plan.segments.end()
@@ -229,9 +227,9 @@ std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan,
   return pieces;
 }
 
-/// Adds the segment of the animation's middle frame, if its camera is that of a frame in the plan.
+/// Adds the segment of the shot's middle frame, if its camera is that of a frame in the plan.
 void add_middle(Plan& plan) {
-  const int middle = plan.last_frame / 2;
+  const int middle = plan.middle_of_shot();
   const auto holds = [&](const PlannedSegment& segment) { return segment.holds(middle); };
   const auto piece = std::ranges::find_if(plan.shot, holds);
   if (piece == plan.shot.end() || std::ranges::any_of(plan.segments, holds)) return;
@@ -273,8 +271,8 @@ bool PlannedSegment::is_blurred() const {
 }
 
 std::optional<int> Plan::middle() const {
-  const auto holds = [&](const PlannedSegment& segment) { return segment.holds(last_frame / 2); };
-  return std::ranges::any_of(segments, holds) ? std::optional(last_frame / 2) : std::nullopt;
+  const auto holds = [&](const PlannedSegment& segment) { return segment.holds(middle_of_shot()); };
+  return std::ranges::any_of(segments, holds) ? std::optional(middle_of_shot()) : std::nullopt;
 }
 
 const PlannedSegment& Plan::segment_of(int frame) const {
@@ -285,7 +283,7 @@ const PlannedSegment& Plan::segment_of(int frame) const {
 }
 
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
-               const MediaHash& media, std::span<const int> others, bool with_middle) {
+               const MediaHash& media, std::span<const int> others, const ShotWish& shot) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
   require_lights(scene);
   Plan plan;
@@ -305,6 +303,10 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
           : std::min(last, std::max(last_change(scene, options) + int(std::ceil(longest_shutter(camera.camera_extras))),
                                     last_of_lens(camera)));
 
+  plan.shot_frames = {0, plan.last_frame};
+  if (shot.frames)
+    for (const std::size_t end : {0, 1}) plan.shot_frames[end] = std::clamp((*shot.frames)[end], 0, plan.last_frame);
+
   std::vector<int> outside;
   std::set<int> needed;
   for (const int frame : frames) {
@@ -319,7 +321,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
   plan.shot = pieces_of_shot(scene, plan, camera_node, media);
-  if (with_middle) add_middle(plan);
+  if (shot.with_middle) add_middle(plan);
   if (!outside.empty())
     plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") +
                             " outside the animation (" + extent_in_words(scene, options) +

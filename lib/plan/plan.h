@@ -3,6 +3,7 @@
 // Every value depends on the scene and the segment only, never on which other frames were requested.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -65,20 +66,34 @@ struct Plan {
   TimeOptions time;
   std::vector<int> frames;   ///< the frames asked for, in that order, each once
   std::map<int, int> shows;  ///< for each frame asked for: the frame itself, or the closest frame of the animation
-  int last_frame = 0;        ///< last frame of the animation; without animation a very large number
+  /// Last frame at which anything changes; with media, last frame of the animation, without one a very large number.
+  int last_frame = 0;
   std::vector<PlannedSegment> segments;  ///< by first frame
-  /// The segments that stand for the shot: the segments that hold the animation's first, middle and last frame, each
-  /// once. Decisions of the shot follow from these segments. Empty in scenes with media, whose files need not exist at
-  /// all frames of the animation.
+  /// First and last frame of the shot: those of the animation, or what was asked for.
+  std::array<int, 2> shot_frames{};
+  /// The segments that stand for the shot: the segments that hold the shot's first, middle and last frame, each once.
+  /// Decisions of the shot follow from these segments. Empty in scenes with media, whose files need not exist at all
+  /// frames of the animation.
   std::vector<PlannedSegment> shot;
   bool media = false;  ///< true if the scene has media
   std::string names;   ///< hash of the names of objects and materials, which mattes show
   std::vector<std::string> warnings;
 
-  /// The frame in the middle of the animation, if its segment is in the plan (make_plan).
+  /// The frame in the middle of the shot, if its segment is in the plan (make_plan).
   std::optional<int> middle() const;
+  int middle_of_shot() const { return shot_frames[0] + (shot_frames[1] - shot_frames[0]) / 2; }
   /// The segment that holds a frame of the animation. Throws std::out_of_range if it is not in the plan.
   const PlannedSegment& segment_of(int frame) const;
+};
+
+/// What is asked of the shot.
+struct ShotWish {
+  /// First and last frame; without: those of the animation. Both are clamped to the animation. The frames asked for may
+  /// lie outside of the shot: decisions of the shot and kept pixels come from its frames.
+  std::optional<std::array<int, 2>> frames;
+  /// The plan gets the segment of the shot's middle frame as well, if the camera of the middle frame is that of another
+  /// frame.
+  bool with_middle = false;
 };
 
 /// Hash of the media at a frame (SceneHashes::media). Empty: there are no media.
@@ -86,13 +101,12 @@ using MediaHash = std::function<std::string(int frame)>;
 
 /// Evaluates the segments that hold `frames` and `others`, and compares their frames by content hashes. Neither file
 /// times nor the file's declarations of what is animated count. `others` are frames that the requested frames need:
-/// neighbours and keys. with_middle: the plan gets the segment of the animation's middle frame as well, if the camera
-/// of the middle frame is that of another frame. A requested frame outside the animation shows the animation's closest
-/// frame, with a warning. Decisions keep their defaults.
+/// neighbours and keys. A requested frame outside the animation shows the animation's closest frame, with a warning.
+/// Decisions keep their defaults.
 ///
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Throws InputError for a scene without light and
 /// for a scene that cannot be evaluated, std::invalid_argument for an empty `frames`.
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
-               const MediaHash& media = {}, std::span<const int> others = {}, bool with_middle = false);
+               const MediaHash& media = {}, std::span<const int> others = {}, const ShotWish& shot = {});
 
 }  // namespace tempolux

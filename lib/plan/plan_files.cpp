@@ -244,13 +244,14 @@ std::vector<std::string> command_of(const GraphFile& file, const PlanContext& co
 
 std::string plan_json(const Plan& plan, const Graph& graph, const PlanContext& context) {
   Json json = {{"format", "tempolux plan"},
-               {"version", "2.1"},
+               {"version", "2.2"},
                {"history", context.history},
                {"scene", std::filesystem::path(context.scene).filename().string()},
                {"camera", plan.camera},
                {"fps", plan.time.fps},
                {"segment_length", plan.time.segment_length},
                {"light_units", plan.time.light_units},
+               {"shot", plan.shot_frames},
                {"frames", plan.frames}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = stages_json(plan, graph, context.costs);

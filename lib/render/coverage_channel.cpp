@@ -7,6 +7,7 @@
 #include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/pixel_surfaces.h"
+#include "lib/render/shutter.h"
 
 namespace tempolux {
 namespace {
@@ -16,6 +17,7 @@ constexpr std::size_t kAround = 9, kCentre = 4;            ///< a pixel among th
 constexpr std::size_t kOther = 9;                          ///< index of surfaces that none of the nine centres sees
 constexpr std::size_t kSearch = 8;                         ///< rays per pixel that search for such surfaces
 constexpr std::uint64_t kPattern = 0x636f766572616765ull;  ///< key of the rays' places, equal for all pixels and frames
+constexpr std::uint64_t kBlurred = 0x626c757272656421ull;  ///< key of the random numbers of soft_edges()
 
 /// The surface that a ray meets first.
 struct Seen {
@@ -32,6 +34,11 @@ struct Seen {
            std::abs(dot(normal, other.position - position)) < footprint;
   }
 };
+
+Seen seen_at(const SurfacePoint& point, const Ray& ray, float footprint) {
+  return {point.object, point.material, point.position,
+          dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal, footprint};
+}
 
 class PixelCoverage {
  public:
@@ -84,9 +91,7 @@ class PixelCoverage {
   Seen seen(const CameraRays& rays, std::size_t i) const {
     const Hit& hit = rays.hits[i];
     if (hit.surface == kNone) return {};
-    const SurfacePoint point = scene_.tracer.surface_point(hit);
-    return {point.object, point.material, point.position,
-            dot(point.normal, rays.rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hit.t)};
+    return seen_at(scene_.tracer.surface_point(hit), rays.rays[i], view_.pixel_size(hit.t));
   }
 
   /// The surface at the centre of pixel `around` of the 3 x 3 pixels around (x, y); nullptr outside the picture.
@@ -133,7 +138,38 @@ class PixelCoverage {
   std::vector<std::uint8_t> mixed_;  ///< by pixel; 1: another ray meets another surface than the centre's ray
 };
 
+/// What a sample of a blurred picture meets, with place and normal at the frame's time: a surface that moves is one
+/// surface.
+Seen seen_in(const SeenNow& now, const CameraSample& sample) {
+  const Ray ray = now.view.ray(sample);
+  Hit hit;
+  if (!now.scene.tracer.intersect(ray, hit)) return {};
+  const SurfacePoint point = now.scene.tracer.surface_point(hit);
+  Seen seen = seen_at(point, ray, now.view.pixel_size(hit.t));
+  if (now.scene.stored) {
+    const StoredPlaces::Place then = now.scene.stored->of(point, point.normal_geometric, seen.normal);
+    seen.position = then.surface.position;
+    seen.normal = then.shading;
+  }
+  return seen;
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> soft_edges(const RenderScene& scene, const CameraView& view, const Shutter* shutter) {
+  std::vector<std::uint8_t> edges(std::size_t(view.width()) * std::size_t(view.height()));
+  parallel_pixels(view.width(), view.height(), [&](int x, int y, std::size_t p) {
+    Seen first;
+    for (std::uint32_t r = 0; r < kSearch && !edges[p]; ++r) {
+      const PixelRandom random(kBlurred, p, r);
+      const SeenNow now = seen_now({scene, view}, shutter, random);
+      const Seen seen = seen_in(now, sample_of_pixel(now.view, x, y, random));
+      if (r == 0) first = seen;
+      else edges[p] = !first.same_as(seen);
+    }
+  });
+  return edges;
+}
 
 std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,
                                                const std::vector<std::string>& channels, Image& image) {

@@ -12,6 +12,8 @@
 
 namespace tempolux {
 
+class Shutter;
+
 /// Throws InputError, which lists the known groups, if `channels` holds an unknown group.
 void check_channels(const std::vector<std::string>& channels);
 
@@ -66,5 +68,10 @@ void add_influence_channels(const RenderScene& scene, const CameraView& view, co
 /// Returns by pixel 1 where one of the channels is not 0; empty without "coverage".
 std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,
                                                const std::vector<std::string>& channels, Image& image);
+
+/// By pixel 1 where eight rays over the pixel, the lens and the time that the shutter is open meet several surfaces, as
+/// add_coverage_channel tells surfaces apart: there the samples of a blurred picture differ by what they see. Points of
+/// moving surfaces are compared at the frame's time. The rays do not depend on seed or frame. shutter: may be null.
+std::vector<std::uint8_t> soft_edges(const RenderScene& scene, const CameraView& view, const Shutter* shutter);
 
 }  // namespace tempolux

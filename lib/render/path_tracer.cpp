@@ -148,7 +148,9 @@ void EyeTracer::arrive(const SurfacePoint& point, EyeState& state) const {
     state.throughput *= state.inside.transmittance_to(frame.materials, point.material, front, state.hit.t);
   state.cone.advance(state.hit.t);
   state.distance += state.spread * state.hit.t;
-  if (state.light_counts() && !was_sampled(state.divided_leg, point.position, state.last.position))
+  const bool hidden = scene_.without_hidden_light && !state.last.weighed &&
+                      (state.path.layer() == Layer::caustic || state.path.layer() == Layer::indirect);
+  if (!hidden && state.light_counts() && !was_sampled(state.divided_leg, point.position, state.last.position))
     add_met(state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width), state);
 }
 

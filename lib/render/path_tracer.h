@@ -197,6 +197,9 @@ struct RenderScene {
   /// At a moment of a shutter: finds the place of a hit in the scene that stored light belongs to. Null: the scene
   /// itself holds the stored light.
   const StoredPlaces* stored = nullptr;
+  /// Camera paths leave out light of lamps (not of the sky) that mirrors and smooth glass send on to a matte surface or
+  /// a medium in the layers caustic and indirect. add_hidden_light() adds this light by light paths.
+  bool without_hidden_light = false;
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 

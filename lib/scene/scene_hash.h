@@ -25,7 +25,7 @@ std::string materials_hash(const Scene& scene, std::span<const Material> materia
 /// Hash of the placed punctual lights, all emitting triangles with their emission, and the environment.
 std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,
                         std::span<const Material> materials, std::span<const Surface> surfaces);
-/// Hash of the participating media: a constant, since volumes are no part of the scene file.
+/// Hash of the participating media: a constant. SceneInput replaces it by the hash of the voxels that it has read.
 std::string media_hash();
 
 }  // namespace tempolux

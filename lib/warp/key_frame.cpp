@@ -15,7 +15,7 @@ namespace {
 bool is_light(const std::string& channel) {
   if (!is_colour(channel)) return false;
   const std::string layer = channel.substr(0, std::max<std::size_t>(channel.size(), 2) - 2);
-  return layer != "albedo" && layer != "variance" && !layer.starts_with("variance.");
+  return layer != "albedo" && layer != "variance" && !layer.starts_with("variance.") && !layer.starts_with("coverage.");
 }
 
 }  // namespace

@@ -8,13 +8,20 @@ import dataclasses
 import json
 import statistics
 import sys
+import tempfile
+from pathlib import Path
 from typing import Callable
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "pipelines"))
 import cases
+import combinations
 import curves
 import everyscene
+import leaving_matrix
 import paper_rows
+import random_beside
 import required
+import results_page
 import steady_rows
 from measure import figure, quantity
 
@@ -85,6 +92,67 @@ def stress(bench):
         + (["Short form."] if bench.small else []),
         f"{len(failed)} of {count} rows failed",
         1 - len(failed) / max(1, count),
+    )
+
+
+def random_rooms(bench):
+    """Sixty random scenes, ten a step."""
+    count, size, reference = (6, "48x27", 2) if bench.small else (60, "96x54", 20)
+    rows = []
+    for first in range(1, count + 1, 10):
+        numbers = range(first, min(first + 9, count) + 1)
+        rows += bench.step(f"from {first}", lambda: random_beside.rows(bench, numbers, size, 120, reference))
+    within, judged, wrong, text = random_beside.summary(rows)
+    return figure(
+        "Sixty random scenes: is a frame as good as it says?",
+        "of frames whose reference converged 90 % of the errors within 1.3 of what the frame says, none above 3",
+        random_beside.HEADER,
+        [random_beside.cells(row) for row in rows],
+        within >= 0.9 * judged and not wrong,
+        [text, "?: the reference is not converged, the row is not judged."],
+        f"{within} of {judged} within 1.3; above 3: {', '.join(wrong) or 'none'}",
+        within / max(1, 0.9 * judged) if not wrong else min(0.99, within / max(1, 0.9 * judged)),
+    )
+
+
+def all_pairs(bench):
+    """All pairs of what can be asked for."""
+    def run():
+        with tempfile.TemporaryDirectory() as folder:
+            return [[list(pair), verdict] for pair, verdict in combinations.verdicts(bench.bin, Path(folder), 8 if bench.small else 1)]
+    rows = bench.step("pairs", run)
+    failed = [f"{' + '.join(pair)}: {verdict}" for pair, verdict in rows if verdict.startswith("FAIL")]
+    header, cells, refused = combinations.table(rows)
+    return figure(
+        "All pairs of what can be asked for",
+        "each pair right (mean of each frame within 2 % of path tracing, previews 10 %), or refused in one line",
+        header,
+        cells,
+        not failed,
+        ["A number: the largest difference of a frame's mean to path tracing with the same shutter, lens and smoke. "
+         "*One variable*: both are values of this variable, so they exclude each other."] + refused + failed,
+        f"{len(rows)} pairs, {len(failed)} wrong, {sum(verdict.startswith('refused') for _, verdict in rows)} refused",
+        1 - len(failed) / len(rows),
+    )
+
+
+def leaving_by_scene(bench):
+    """What runs in twelve scenes, and what one edit costs."""
+    folder = bench.out / "leaving"
+    rows, columns, broken = bench.step("scenes", lambda: leaving_matrix.of_scenes(bench.bin, folder))
+    edits = bench.step("edits", lambda: leaving_matrix.of_edits(bench.bin, folder))
+    header, cells = leaving_matrix.scenes_table(rows, columns)
+    return figure(
+        "What runs in twelve scenes, and what one edit costs",
+        "no stage without what needs it; neither OpenImageIO nor OpenVDB mapped without images or volumes",
+        header,
+        cells,
+        not broken,
+        [f"Files that each stage makes, by its folder: frames {leaving_matrix.FRAMES}, {leaving_matrix.SIZE}, QUALITY=draft.",
+         "One edit in a small room of eight frames:", results_page.table(leaving_matrix.EDITS_HEADER, leaving_matrix.edits_table(edits)),
+         *leaving_matrix.reasons(rows), *broken],
+        f"{len(rows)} scenes, {len(broken)} laws broken",
+        1 if not broken else 0.5,
     )
 
 
@@ -297,6 +365,9 @@ PARTS = [
         for name in steady_rows.SCENES
     ),
     Part("stress", "stiff", "stiff and extreme cases", "made", 1500, ALL, stress),
+    Part("random", "stiff", "random scenes: is a frame as good as it says?", "made at random", 1500, ALL, random_rooms),
+    Part("combinations", "stiff", "all pairs of what can be asked for", "made", 500, ALL, all_pairs),
+    Part("leaving-scenes", "leaving", "what runs where, and what an edit costs", "12 scenes", 60, ALL, leaving_by_scene),
     Part(
         "leaving-out",
         "leaving",

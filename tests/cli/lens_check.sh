@@ -33,6 +33,12 @@ whole --f-stop 0 --shutter 0; [ "$(digest)" = "$sharp" ] || bad 'options that tu
 whole --shutter 180 --threads 1; one=$(digest)
 whole --shutter 180 --threads 3; [ "$(digest)" = "$one" ] || bad 'a blurred picture depends on the number of threads'
 [ "$one" != "$sharp" ] || bad 'a shutter changes nothing'
+# Means of what a pixel shows come with coverage: in blurred frames, and in sharp ones that are to be filtered (halves).
+has_means() { "$BUILD/bin/tempolux-info" made.exr | grep -q 'coverage.mean'; }
+whole --channels RGBA,coverage --shutter 0; ! has_means || bad 'a sharp frame without halves has means'
+whole --channels RGBA,coverage,layers,halves --shutter 0; has_means || bad 'no means in a frame for the filter'
+whole --channels RGBA,coverage --f-stop 1 --focus 2; has_means || bad 'no means with a lens'
+whole --channels RGBA,coverage --shutter 180; has_means || bad 'no means with a shutter'
 # Stored light belongs to the middle of the shutter. Where the shutter opens at the frame's time, this is another time.
 photons() { "$BUILD/bin/photon-trace" "$scene" --frame 10 --photons 1k -q -o light.photons "$@" || bad 'no photons'; }
 cached="$BUILD/bin/frame-render $scene --frame 10 --size 16x9 --spp 4 --integrator photons --photons light.photons -q -o made.exr"

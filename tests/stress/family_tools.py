@@ -26,6 +26,16 @@ def killed(s):
     script(s, "kill", ROUNDS="50")
 
 
+@case("tools", "EIO and ENOSPC at each call that writes", FULL)
+def write_errors(s):
+    (s.scratch / "build" / "tests").mkdir(parents=True, exist_ok=True)
+    preload = s.tools.parent / "tests" / "libfail-write.so"
+    if not preload.exists():
+        return s.skipped("tests/libfail-write.so is not built")
+    (s.scratch / "build" / "tests" / "libfail-write.so").symlink_to(preload)
+    script(s, "write_errors", PLACES="1000")
+
+
 @case("tools", "threads 1, 2, 3, 7", FULL)
 def threads(s):
     script(s, "threads")

@@ -42,7 +42,7 @@ enum ExitCode {
 /// How a run uses an input file.
 enum class InputRole {
   file,         ///< no output may replace it
-  replaceable,  ///< read completely before anything is written, so an output may replace it, as in --records c -o c
+  replaceable,  ///< read completely before anything is written, so an output may replace it, as in frame-render --base f.exr -o f.exr
 };
 
 /// For number_option: any finite number from `least` on.

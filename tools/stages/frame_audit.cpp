@@ -82,10 +82,12 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Au
 
 void add_light_without_paths(Tool& tool, const RenderOptions& options, const AuditedFrame& made,
                              RenderedFrame& rendered) {
-  if (options.light_paths == 0 || !may_hide_light(made.scene.frame())) return;
+  const bool of_all_lamps = made.scene.without_hidden_light;
+  if (options.light_paths == 0 || (!of_all_lamps && !may_hide_light(made.scene.frame()))) return;
   tool.stats().phase("light paths", true);
-  tool.say("light paths: what mirrors, glass and gloss show of their light is still missing (layer specular)");
-  const Lights lights = made.aimed(Lights::Which::punctual);
+  if (may_hide_light(made.scene.frame()))
+    tool.say("light paths: what mirrors, glass and gloss show of their light is still missing (layer specular)");
+  const Lights lights = made.aimed(of_all_lamps ? Lights::Which::lamps : Lights::Which::punctual);
   const auto add = [&](std::uint64_t paths, std::uint64_t number, LayerImage& picture) {
     const std::uint64_t seed = mix64(made.options.seed ^ (0x6c69676874ull << 8 | number));
     add_hidden_light(made.scene, lights, made.view, paths, seed, picture);

@@ -53,6 +53,12 @@ Wish wish_of(Tool& tool, const PlanOptions& options) {
   for (const int frame : wish.report)
     if (std::ranges::find(frames, frame) == frames.end())
       throw InputError("--report " + options.report + ": frame " + std::to_string(frame) + " is none of --frames");
+  if (!options.shot.empty()) {
+    const std::vector<int> shown = parse_frames(options.shot);
+    if (shown.back() - shown.front() + 1 != int(shown.size()))
+      throw InputError("--shot " + options.shot + ": a shot is a range of frames, as 100-199");
+    wish.shot = {shown.front(), shown.back()};
+  }
   if (!options.measured.empty()) {
     if (wish.method != FrameMethod::preview || wish.photons > 0)
       throw InputError("--measured: photons of --method preview; leave it out with another method or with --photons");

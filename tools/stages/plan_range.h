@@ -9,8 +9,13 @@
 
 namespace tempolux::tools {
 
+inline constexpr const char* kShotHelp =
+    "frames of the shot, which decides about light and kept pixels whatever frames are asked for; without: all frames "
+    "of the animation";
+
 struct PlanOptions {
-  std::string scene, folder = "out", estimate, quality = "final", method = "auto", filter = "auto", report, measured;
+  std::string scene, folder = "out", estimate, quality = "final", method = "auto", filter = "auto", report, measured,
+                     shot;
   std::vector<std::string> recipes, words;
   double aqm = -1;  ///< share of pixels in which a viewer may see errors; below 0: the preset's
   Wish wish;

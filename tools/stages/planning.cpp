@@ -119,7 +119,9 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
   decided_.push_back(name);
   const std::string kept = content_of(path_ + "/" + name + ".decided");
-  if (!kept.empty()) return read_decisions(kept);
+  if (!kept.empty()) try {
+      return read_decisions(kept);
+    } catch (const InputError&) {}  // a damaged file is made again
   const Decisions decided = decide();
   write_whole(path_ + "/" + name + ".decided", decisions_text(decided));
   return decided;
@@ -184,7 +186,7 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
                    input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
                    helper_frames(tool.common().frames, wish),
-                   wish.method == FrameMethod::still || wish.method == FrameMethod::automatic);
+                   {wish.shot, wish.method == FrameMethod::still || wish.method == FrameMethod::automatic});
   tool.stats().phase("pilots", true);
   decide_segments(tool, wish, camera, folder);
   tool.stats().phase("graph");
@@ -202,6 +204,7 @@ void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFold
     return folder ? folder->decisions(segment, hash_hex(key + tool_hash_("scene-plan")), make) : make();
   };
   std::string shot_key = "shot";
+  for (const int end : plan.shot_frames) shot_key += ' ' + std::to_string(end);
   for (const PlannedSegment& piece : plan.shot) shot_key += decision_key(piece, wish, plan.media);
   std::optional<Decisions> shot;
   if (plan.shot.size() > 1)
@@ -217,7 +220,8 @@ void Planner::decide_segments(Tool& tool, const Wish& wish, int camera, PlanFold
                             (middle ? middle->light + middle->camera : "");
     segment.decisions = decided(segment, key, [&] {
       Decisions d = decide(segment, own, plan.media, source, shot && !is_measured ? &*shot : nullptr);
-      if (middle) decide_still(segment, *middle, plan.last_frame + 1, own, plan.media, source, d);
+      if (middle)
+        decide_still(segment, *middle, plan.shot_frames[1] - plan.shot_frames[0] + 1, own, plan.media, source, d);
       return d;
     });
     if (is_measured) segment.decisions.reasons.push_back({"photon-trace", measured->second.because});

@@ -218,7 +218,8 @@ TEST(LookedFrames, AreEndsMiddleAndWhereSomethingComesOrGoes) {
   slide(scene, kBox, places);
   // Frames 0 and 11 show the same picture. The box jumps at frame 17 and moves again at 23.
   EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0]), (std::vector<int>{0, 17, 23}));
-  EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0], true), (std::vector<int>{11, 17, 23})) << "a segment of a shot";
+  EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0], true), (std::vector<int>{11, 17, 23}))
+      << "a segment of a shot";
 }
 
 TEST(Graph, AFrameMadeAloneHasTheFilesThatItHasInARange) {
@@ -391,9 +392,9 @@ TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
   for (const int key : {0, 2, 3, 4, 8}) EXPECT_TRUE(graph.pictures.at(key).starts_with("keys/")) << key;
 }
 
-/// A box moves through frames 0 to 8 while the camera stands until frame 6: frame 4 gives the pixels that stay, with its
-/// own light, to the frames until 6. Frame 7 is sampled as a whole. Frame 4 needs no other frame. The segments of frame
-/// 4 and of frame 0 differ.
+/// A box moves through frames 0 to 8 while the camera stands until frame 6: frame 4 gives the pixels that stay, with
+/// its own light, to the frames until 6. Frame 7 is sampled as a whole. Frame 4 needs no other frame. The segments of
+/// frame 4 and of frame 0 differ.
 TEST(Graph, StillFramesTakePixelsFromTheMiddleWhileTheCameraStands) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7, 8});
@@ -403,13 +404,13 @@ TEST(Graph, StillFramesTakePixelsFromTheMiddleWhileTheCameraStands) {
   wish.filter = 1;
   TimeOptions time;
   time.segment_length = 4;
-  const Plan plan = make_plan(scene, std::vector{0, 4, 7}, kCamera, time, {}, {}, true);
+  const Plan plan = make_plan(scene, std::vector{0, 4, 7}, kCamera, time, {}, {}, {.frames = {}, .with_middle = true});
   ASSERT_EQ(plan.middle(), 4);
   const Graph graph = graph_of(plan, records(), wish);
   ASSERT_EQ(names(graph, "still/").size(), 1u);
   const std::string words = file_of(graph, "raw/0000").words;
-  for (const char* part : {" --still still/0004-", " --still-frame 4", " --still-irradcache cache/0004-",
-                           " --still-points points/0004-"})
+  for (const char* part :
+       {" --still still/0004-", " --still-frame 4", " --still-irradcache cache/0004-", " --still-points points/0004-"})
     EXPECT_NE(words.find(part), std::string::npos) << part << " in " << words;
   EXPECT_EQ(file_of(graph, "raw/0007").words.find("--still"), std::string::npos);
   EXPECT_NE(file_of(graph, "filtered/0004").words.find("still/0004-"), std::string::npos);
@@ -418,6 +419,27 @@ TEST(Graph, StillFramesTakePixelsFromTheMiddleWhileTheCameraStands) {
   Decisions pays = records();
   pays.still = true;
   EXPECT_EQ(names(graph_of(plan, pays, wish), "still/").size(), 1u) << "METHOD=auto where it pays";
+}
+
+/// The shot is the whole animation, or the frames that are asked for: its first, middle and last frame stand for it,
+/// whatever frames are rendered.
+TEST(Plan, TheShotIsTheAnimationOrWhatIsAskedFor) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
+  TimeOptions time;
+  time.segment_length = 2;
+  const auto pieces = [&](std::vector<int> frames, const ShotWish& shot) {
+    const Plan plan = make_plan(scene, frames, kCamera, time, {}, {}, shot);
+    std::vector<int> found{plan.shot_frames[0], plan.shot_frames[1]};
+    for (const PlannedSegment& piece : plan.shot) found.push_back(piece.first);
+    return found;
+  };
+  EXPECT_EQ(pieces({3}, {}), (std::vector{0, 11, 0, 4, 10}));
+  EXPECT_EQ(pieces({3}, {.frames = {{4, 9}}}), (std::vector{4, 9, 4, 6, 8}));
+  EXPECT_EQ(pieces({5, 8}, {.frames = {{4, 9}}}), (std::vector{4, 9, 4, 6, 8}));
+  EXPECT_EQ(pieces({3}, {.frames = {{10, 99}}}), (std::vector{10, 11, 10})) << "clamped to the animation";
+  EXPECT_EQ(make_plan(scene, std::vector{5}, kCamera, time, {}, {}, {.frames = {{4, 9}}, .with_middle = true}).middle(),
+            6);
 }
 
 /// An interval is halved by what a viewer sees where pictures of its quality have more errors than allowed.

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "lib/render/blurred_albedo.h"
+#include "lib/render/feature_means.h"
 #include "lib/render/data_channels.h"
 #include "tests/support/frames.h"
 
@@ -162,11 +162,71 @@ TEST(Lens, AlbedoIsAMeanOverTheLens) {
     return sum;
   };
   EXPECT_NEAR(row_mean(14), 0.2, 1e-6);
-  blur_albedo(lit.scene(), view, nullptr, image);
+  add_feature_means(lit.scene(), view, nullptr, {}, {}, image);
   EXPECT_NEAR(row_mean(16), 0.5, 0.01);
   // Pixels on both sides of the place average over 2 pixels: the circle's curvature there adds less than .003.
   EXPECT_NEAR(row_mean(14), 0.2 + 0.6 * (1 / 3.0 - std::sqrt(3.0) / (4 * M_PI)), 0.01);
   EXPECT_NEAR(row_mean(6), 0.2, 1e-6);
+}
+
+/// A pixel that sees the dark wall with the share 1 - p and the bright one with p has the mean albedo .2 + .6 p. On
+/// paper the standard error of this mean is .6 sqrt(p (1 - p) / 64) for independent rays. All rays see 1 / Z = 1 / 4.
+/// The channel N stays that of the pinhole. Meant to catch: the variance in place of its root, the error of one ray,
+/// means that replace the pinhole's normal.
+TEST(Lens, TheErrorOfAMeanIsThatOfItsShares) {
+  test::HandMadeScene made;
+  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
+  made.add_quad({0, -9, -4}, {9, -9, -3}, {9, 9, -3}, {0, 9, -4}, test::matte(Rgb(0.8f)));
+  const SceneFrame& frame = made.frame();
+  const test::Lit lit(frame);
+  const CameraView view = lens_of(1, 2, 32);
+  Image image{32, 18, {}, {}, {}, {}};
+  add_data_channels(lit.scene(), view, {"albedo", "N"}, {}, {}, image);
+  add_feature_means(lit.scene(), view, nullptr, {}, {"coverage"}, image);
+  const auto at = [&](const char* name, int x, int y) {
+    return double(image.find(name)->values[std::size_t(32 * y + x)]);
+  };
+  const double tilted = 1 / std::sqrt(82.0);  // of the bright wall's normal (-1, 0, 9): its part along -x
+  int soft = 0;
+  for (int y = 0; y < 18; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const double p = std::round((at("albedo.G", x, y) - 0.2) / 0.6 * kMeanRays) / kMeanRays;
+      soft += p > 0.01 && p < 0.99;
+      EXPECT_NEAR(at("coverage.error.albedo.G", x, y), 0.6 * std::sqrt(p * (1 - p) / kMeanRays), 1e-5);
+      EXPECT_NEAR(at("coverage.mean.N.X", x, y), -tilted * p, 1e-5);
+      EXPECT_NEAR(at("N.X", x, y), x < 16 ? 0 : -tilted, 1e-6);
+    }
+  EXPECT_GT(soft, 18 * 7);  // discs of 8 pixels
+  EXPECT_NEAR(at("coverage.mean.inverse_Z", 2, 9), 0.25, 1e-6);
+  EXPECT_NEAR(at("coverage.error.inverse_Z", 2, 9), 0, 1e-7);
+}
+
+/// In a sharp picture of 33 columns the walls meet in the middle of column 16. Pixels at the edge take the means of 64
+/// rays: half of column 16 shows each wall, and 64 stratified rays err less than independent ones, .6 x .0625. The
+/// other pixels take their centre's ray, without an error. albedo stays that of the pinhole. Meant to catch: means of
+/// all pixels by one ray, edges by one ray.
+TEST(Lens, SharpPicturesTakeMeansAtEdges) {
+  test::HandMadeScene made;
+  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
+  made.add_quad({0, -9, -4}, {9, -9, -4}, {9, 9, -4}, {0, 9, -4}, test::matte(Rgb(0.8f)));
+  const SceneFrame& frame = made.frame();
+  const test::Lit lit(frame);
+  const CameraView view = lens_of(0, 2, 33);
+  Image image{view.width(), view.height(), {}, {}, {}, {}};
+  add_data_channels(lit.scene(), view, {"albedo"}, {}, {}, image);
+  std::vector<std::uint8_t> edges(image.pixel_count());
+  for (int y = 0; y < view.height(); ++y) edges[std::size_t(33 * y + 16)] = 1;
+  const std::vector<float> pinhole = image.find("albedo.G")->values;
+  add_feature_means(lit.scene(), view, nullptr, edges, {"coverage"}, image);
+  const auto at = [&](const char* name, int x) { return double(image.find(name)->values[std::size_t(33 * 5 + x)]); };
+  EXPECT_NEAR(at("coverage.mean.albedo.G", 16), 0.5, 0.6 * 0.0625);
+  EXPECT_NEAR(at("coverage.error.albedo.G", 16), 0.6 * 0.0625, 1e-3);
+  for (const auto& [x, albedo] : {std::pair{15, 0.2}, {17, 0.8}}) {
+    EXPECT_NEAR(at("coverage.mean.albedo.G", x), albedo, 1e-6);
+    EXPECT_EQ(at("coverage.error.albedo.G", x), 0);
+    EXPECT_NEAR(at("coverage.mean.inverse_Z", x), 0.25, 1e-6);
+  }
+  EXPECT_EQ(image.find("albedo.G")->values, pinhole);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "lib/render/feature_means.h"
+#include "lib/render/data_channels.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/scene/camera_extras.h"
 #include "lib/scene/centre_shutter.h"
@@ -253,6 +255,59 @@ TEST(Shutter, StoredLightSticksToWhatMoves) {
       EXPECT_NEAR_VEC(place.shading, then.normal, 1e-6f);
     }
   });
+}
+
+/// The square of ASlidingEdgeIsARamp faces the camera: the mean normal is (0, 0, share), and the square, seen from 3 m,
+/// has the mean of 1 / Z share / 3. Of 64 independent rays in each of 12 pixels a share errs by sqrt(.25 / 768) = .018
+/// at most; three times that. The channel N stays that of the pinhole. Meant to catch: means at the frame's time (.37
+/// off beside the edge), rays that miss left out of the mean.
+TEST(Shutter, MeansOfASlidingEdgeAreARamp) {
+  Film film;
+  const int square = film.add_glowing_square();
+  film.add_camera();
+  film.maker.animate(square, "translation", {0, 1 / 12.0f}, {0, 0, 0, 0.8f, 0, 0});
+  film.at_frame_1([&](const Shutter* shutter, const RenderScene& lit, const CameraView& view) {
+    Image image{40, 20, {}, {}, {}, {}};
+    add_data_channels(lit, view, {"N", "albedo"}, {}, {}, image);
+    add_feature_means(lit, view, shutter, {}, {"coverage"}, image);
+    const auto mean = [&](const char* name, int x) {
+      double sum = 0;
+      for (int y = 4; y < 16; ++y) sum += double(image.find(name)->values[std::size_t(40 * y + x)]) / 12;
+      return sum;
+    };
+    for (int x = 2; x < 38; ++x) {
+      const double share = expected_column(8, 28, 4, x);
+      EXPECT_NEAR(mean("coverage.mean.N.Z", x), share, 0.054) << x;
+      EXPECT_NEAR(mean("coverage.mean.inverse_Z", x), mean("coverage.mean.N.Z", x) / 3, 1e-6) << x;
+      EXPECT_EQ(mean("N.Z", x), x >= 8 && x < 28 ? 1 : 0) << x;
+      const double measured = mean("coverage.mean.N.Z", x);
+      EXPECT_LE(mean("coverage.error.N.Z", x), std::sqrt(measured * (1 - measured) / kMeanRays) + 1e-6) << x;
+    }
+    EXPECT_EQ(image.find("coverage.mean.N.X")->values[40 * 10 + 10], 0);
+  });
+}
+
+/// A square that comes closer by 9.6 m a frame, seen by an orthographic camera, is one surface, as its points are
+/// compared at the frame's time; where it slides, the ramps of 4 pixels at its edges see two. Meant to catch: places of
+/// the samples' moments (all pixels of the square are edges), rays of the frame's time (no ramp).
+TEST(Shutter, AMovingSurfaceHasSoftEdgesOnly) {
+  for (const bool slides : {false, true}) {
+    Film film;
+    const int square = film.add_glowing_square({{"translation", {0.4, 0, -1}}});
+    film.add_camera();
+    const float x = slides ? 0.8f : 0.4f;
+    film.maker.animate(square, "translation", {0, 1 / 12.0f}, {0.8f - x, 0, -1, x, 0, slides ? -1 : 1.4f});
+    film.at_frame_1([&](const Shutter* shutter, const RenderScene& lit, const CameraView& view) {
+      ASSERT_NE(shutter, nullptr);
+      const std::vector<std::uint8_t> edges = soft_edges(lit, view, shutter);
+      for (int column = 0; column < 40; ++column) {
+        const double share = expected_column(8, 28, slides ? 4 : 0, column);
+        if (share > 0 && share < 0.2) continue;  // eight rays may miss it
+        if (share > 0.8 && share < 1) continue;
+        EXPECT_EQ(edges[std::size_t(40 * 10 + column)], share > 0 && share < 1) << column << slides;
+      }
+    });
+  }
 }
 
 }  // namespace
