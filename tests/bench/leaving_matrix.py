@@ -119,6 +119,7 @@ def laws(name, has, stages, decisions, libraries):
 
 def of_scenes(tools, folder):
     rows, broken, columns = [], [], []
+    folder.mkdir(parents=True, exist_ok=True)
     for name, variables, has in the_scenes(folder):
         if not Path(variables["SCENE"]).exists():
             rows.append((name, None, "not here", 0))
@@ -196,7 +197,6 @@ def main():
     parser.add_argument("--out", type=Path, required=True, help="folder for runs")
     args = parser.parse_args()
     tools, folder = (args.build / "bin").resolve(), args.out.resolve()
-    folder.mkdir(parents=True, exist_ok=True)
     rows, columns, broken = of_scenes(tools, folder)
     edits = of_edits(tools, folder)
     header, cells = scenes_table(rows, columns)
