@@ -80,7 +80,7 @@ class Lights {
   /// lights and the environment. punctual: point, spot and directional lights. lamps: all but the environment.
   enum class Which : std::uint8_t { all, placed, distant, punctual, lamps };
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
-  /// emitted.
+  /// emitted. `frame` must outlive this object; `table` need not.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
 
   /// The lights inside the scene alone, for emit(). Half of the photons are shared out by the probabilities of the

@@ -23,7 +23,7 @@ class MeshLight {
   MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame);
   /// Irradiance at the hit, on the side to which `geometric` (unit) points. 0 if the file has no element there.
   Rgb irradiance(const SurfacePoint& hit, Vec3 geometric) const;
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_; }  ///< number of elements in the file
   /// True if the light includes caustic light.
   bool has_caustic() const { return caustic_; }
 

@@ -25,7 +25,8 @@ constexpr std::uint64_t kLeastPathsOfLight = 1024;
 constexpr std::size_t kFewestPhotons = 1000;
 constexpr std::uint64_t kMostTimes = 16;
 
-/// Light i of a pilot is a node: slots of the emission table that share their part of the photons by flux.
+/// The lights of the pilot are nodes of the scene. Slots of the emission table that belong to one node share the
+/// photons of the node by flux.
 struct NodesOfSlots {
   std::vector<std::uint32_t> node;         ///< by slot: index in the file, or formats::ViewLight::kEnvironment
   std::map<std::uint32_t, double> shares;  ///< by node: sum of the probabilities of its slots, if above 0

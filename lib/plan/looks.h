@@ -21,9 +21,9 @@ struct Looking {
   const std::vector<int>& frames;
   const Wish& wish;
   bool media;
-  std::function<std::unique_ptr<FramePilot>(int)> pilot_of;
-  std::function<LightSharing(const FramePilot&)> sharing_of;
-  const Decisions* shot;  ///< its way must be measured, too; null: there is no shot
+  std::function<std::unique_ptr<FramePilot>(int)> pilot_of;   ///< makes the pilot of a frame
+  std::function<LightSharing(const FramePilot&)> sharing_of;  ///< how many frames share the light that a pilot rates
+  const Decisions* shot;                                      ///< its way must be measured, too; null: there is no shot
 };
 /// Measures each frame until its own best way has been measured, or until the segment may follow the shot. If the best
 /// way of the whole segment is not measured at some of the frames, measures these frames again until it is. Sets

@@ -26,8 +26,10 @@ struct TemporalOptions {
 /// - Cells that were traced again, by reason. `moved`: something moved across the cell's ray, or the ray's hit moved.
 ///   `lost`: the light of the anchor became more than twice or less than half as strong. `unanchored`: no point
 ///   represents the hit. `near`: a close hit whose turn it was. `aged`: drawn by age, with a new ray.
-/// - `scaled`: cells whose radiance was multiplied by the ratio of their anchor's light.
-/// - `kept`: records that did not change. `explicit_only`: records in which only bright points were sampled anew.
+/// - `cells`: cells of all records. `scaled`: cells whose radiance was multiplied by the ratio of their anchor's light.
+/// - `records`: records after the frame. `kept`: records that did not change. `explicit_only`: records in which only
+///   bright points were sampled anew. `born`: new records. `removed`: records whose place is gone. `deforming`: further
+///   records that are removed, because their surface changes its shape.
 /// - `update`, `birth`: rays of kept and of new records.
 struct TemporalCounts {
   std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, near = 0, aged = 0, scaled = 0;
