@@ -38,7 +38,8 @@ foreach(format paths meshirrad)
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()
 
-add_test(NAME formats.minor_versions COMMAND python3 -B formats/minor_versions.py WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+add_test(NAME formats.minor_versions COMMAND python3 -B formats/minor_versions.py
+         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 
 # Ideas that the ablation leaves out still stand in the source as it has them: one that is gone leaves tests/bench/ablation_ideas.py.
 add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
@@ -62,7 +63,9 @@ add_test(NAME pipelines.blender_mattes COMMAND sh -c "[ -x build/peers/bpy/bin/p
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.blender_mattes PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 # All pairs are measured by `make evidence PARTS=combinations`; each twentieth here.
-add_test(NAME pipelines.combinations COMMAND python3 -B tests/pipelines/combinations.py $<TARGET_FILE_DIR:scene-plan> --every 20 WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.combinations
+         COMMAND python3 -B tests/pipelines/combinations.py $<TARGET_FILE_DIR:scene-plan> --every 20
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.combinations PROPERTIES TIMEOUT 300)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.
 add_test(NAME pipelines.known_walks COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --known WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -95,7 +95,8 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
                "other, and of a frame with the same --seed but without --halves");
   tool.count_option(
       "--light-paths", options.light_paths,
-      "with --integrator path: so many light paths add the light of lamps by way of mirrors and smooth glass, which few "
+      "with --integrator path: so many light paths add the light of lamps by way of mirrors and smooth glass, which "
+      "few "
       "camera paths find and none of point, spot and sun lights, where the camera sees it without mirror or glass; 0: "
       "off");
   tool.list_option(

@@ -4,8 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// Aborts with the name of the file without its folder, so that builds in two folders have equal bytes, line and the
-/// condition. Only for errors of the program: an error in a file or an option is an InputError.
+/// Prints file, line and condition, and aborts, if the condition is false. The file's name has no folder, so builds in
+/// two folders have equal bytes. Use the macro for errors of the program only. An error in a file or an option is an
+/// InputError.
 #define TEMPOLUX_CHECK(condition)                                                               \
   do {                                                                                          \
     if (!(condition)) {                                                                         \

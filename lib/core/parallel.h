@@ -1,5 +1,5 @@
-// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB in lib and tools (parallel_threads.cpp is a version without
-// TBB).
+// lib/core/parallel.h -- deterministic parallel loops. No other file of lib and tools uses TBB. parallel_threads.cpp
+// does the same without TBB.
 //
 // Work is cut into chunks by count, never by the number of threads, and results are joined in chunk order: the same
 // numbers for any --threads.

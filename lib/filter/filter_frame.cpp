@@ -126,13 +126,14 @@ struct FrameFilter::State {
   std::array<std::optional<Collector>, 2> collectors;
   RemainingNoise remaining;
 
-  void filter_group(std::size_t g, const Coverage& coverage, const PictureLight& picture, Image& image) {
+  void filter_group(std::size_t g, const Coverage& coverage, const Features& features, const PictureLight& picture,
+                    Image& image) {
     const LightGroup& group = *middle.light.group(g);
     const Surfaces& on = group.surfaces;
     Candidates candidates(group, coverage);
     candidates.add(group.raw, 1);
     if (g == 0 && collectors[0]) candidates.add({collectors[0]->take(), collectors[1]->take()}, int(1 + added));
-    if (const Features features(image); features.known()) candidates.add(regress(image, group, features));
+    if (features.known()) candidates.add(regress(image, group, features));
     std::vector<std::uint8_t> kinds(image.pixel_count());
     for (int y = 0; y < on.height; ++y)
       for (int x = 0; x < on.width; ++x)
@@ -164,10 +165,11 @@ struct FrameFilter::State {
     if (added != before + after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
     const LayerSums raw = sum_layers(image);
     const Coverage coverage(image);
+    const Features features(image);
     const PicturePlanes planes = picture_of(raw, image);
     const PictureLight picture(planes, image.width, image.height, dark ? *dark : dark_of(planes));
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
-      if (middle.light.group(g)) filter_group(g, coverage, picture, image);
+      if (middle.light.group(g)) filter_group(g, coverage, features, picture, image);
     renew_picture(raw, sum_layers(image), image);
   }
 };

@@ -62,4 +62,13 @@ class PlaneT {
 
 using Plane = PlaneT<float>;
 
+/// The mean of `values` over the 3 x 3 pixels around (x, y) that count; 0 if none counts. counts: 1 or 0 by pixel,
+/// where `values` is 0 as well.
+inline float mean_of_nine(const Plane& values, const Plane& counts, int x, int y) {
+  float sum = 0, count = 0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i) sum += values.at(x + i, y + j), count += counts.at(x + i, y + j);
+  return count > 0 ? sum / count : 0;
+}
+
 }  // namespace tempolux

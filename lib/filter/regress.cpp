@@ -18,7 +18,8 @@ namespace {
 
 constexpr int kFitRadius = kSmall.radius + kSmall.radius;  ///< pixels; docs/methods/st-filter.md 11 has other windows
 constexpr std::size_t kFitTaps = (2 * kFitRadius + 1) * (2 * kFitRadius + 1), kBlockRows = 8, kBlockColumns = 64;
-/// Of each diagonal element, added to it: above the rounding of a sum of kFitTaps terms, so that pivots are positive.
+/// Share of each diagonal element that is added to the element. The share is above the rounding of a sum of kFitTaps
+/// terms, so pivots are positive.
 constexpr float kRounding = kFitTaps * std::numeric_limits<float>::epsilon();
 constexpr std::size_t kTerms = 3 + Features::kCount;
 
@@ -84,12 +85,7 @@ struct Radiance {
     });
     variance = Plane(width, height);
     for_each_row(height, [&](int y) {
-      for (int x = 0; x < width; ++x) {
-        float sum = 0, count = 0;
-        for (int j = -1; j <= 1; ++j)
-          for (int i = -1; i <= 1; ++i) sum += squares.at(x + i, y + j), count += finite.at(x + i, y + j);
-        variance.at(x, y) = count > 0 ? sum / count : 0;
-      }
+      for (int x = 0; x < width; ++x) variance.at(x, y) = mean_of_nine(squares, finite, x, y);
     });
   }
 };

@@ -9,9 +9,10 @@
 
 namespace tempolux {
 
-/// Fits, for each half, pixel p, layer and colour, the radiance of the pixels q = p + (dx, dy) within 9 x 9 by
-///     a + b dx + c dy + sum over features of d_f (f(q) - f(p))
-/// with the least weighted sum of squares, and returns a at p [Bitterli et al., Nonlinearly Weighted First-order
+/// Fits the radiance of the pixels q = p + (dx, dy) within 9 x 9 around each pixel p, for each half, layer and colour,
+/// by the function of q with the least weighted sum of squares
+///     a + b dx + c dy + sum over f of d_f (f(q) - f(p))
+/// f: the features of a pixel. Returns a, the fitted radiance at p [Bitterli et al., Nonlinearly Weighted First-order
 /// Regression for Denoising Monte Carlo Renderings, 2016]. If surfaces share pixels, radiance and features are both
 /// linear in the shares, so the fit is exact for up to seven shares that the features tell apart.
 ///

@@ -200,8 +200,8 @@ class PhotonTracer {
   std::optional<Media> media_;              ///< the frame's media, with raised majorants
   std::vector<char> solid_;                 ///< by material: true for the boundary of solid glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: for light from the back, from the front
-  std::vector<std::uint8_t> varies_;        ///< by material: true if its Bsdf must be made at each hit
-  // (textures, alpha, diffuse transmission, dispersion)
+  /// By material: true if the Bsdf must be made at each hit (textures, alpha, diffuse transmission, dispersion).
+  std::vector<std::uint8_t> varies_;
   std::uint64_t group_count_, members_, batches_per_group_;
   const MoverWatch* watch_ = nullptr;
   std::vector<Inside> slot_inside_;  ///< by slot: the absorbing solid that the light is in; empty: no solid absorbs

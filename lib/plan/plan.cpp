@@ -212,7 +212,7 @@ int last_change(const Scene& scene, const TimeOptions& options) {
                   1'000'000'000);
 }
 
-/// The segments at the first frame, the middle and the last frame of the shot, each once.
+/// Returns the segments that hold the first, the middle and the last frame of the shot. Each segment appears once.
 std::vector<PlannedSegment> pieces_of_shot(const Scene& scene, const Plan& plan, int camera_node,
                                            const MediaHash& media) {
   std::vector<PlannedSegment> pieces;

@@ -138,8 +138,8 @@ class PixelCoverage {
   std::vector<std::uint8_t> mixed_;  ///< by pixel; 1: another ray meets another surface than the centre's ray
 };
 
-/// What a sample of a blurred picture meets, with place and normal at the frame's time: a surface that moves is one
-/// surface.
+/// Returns what a sample of a blurred picture meets. Place and normal are those at the frame's time, so that a moving
+/// surface is one surface at all moments.
 Seen seen_in(const SeenNow& now, const CameraSample& sample) {
   const Ray ray = now.view.ray(sample);
   Hit hit;

@@ -69,8 +69,8 @@ void add_influence_channels(const RenderScene& scene, const CameraView& view, co
 std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,
                                                const std::vector<std::string>& channels, Image& image);
 
-/// By pixel 1 where eight rays over the pixel, the lens and the time that the shutter is open meet several surfaces, as
-/// add_coverage_channel tells surfaces apart: there the samples of a blurred picture differ by what they see. Points of
+/// Finds the edges of a blurred picture. Returns 1 for each pixel in which eight rays over the pixel, the lens and the
+/// time that the shutter is open meet several surfaces, else 0. Surfaces differ as in add_coverage_channel. Points of
 /// moving surfaces are compared at the frame's time. The rays do not depend on seed or frame. shutter: may be null.
 std::vector<std::uint8_t> soft_edges(const RenderScene& scene, const CameraView& view, const Shutter* shutter);
 

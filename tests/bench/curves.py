@@ -417,12 +417,12 @@ def measure(bench, name, size="320x180"):
     cpu, error, plus, _ = curves.shown["ours"]["final"]
     ratio, inside, more = None, True, {}
     theirs = next((points for label, points in curves.shown.items() if label.startswith("Cycles + OIDN")), None)
-    said = f"final has {error:.2f} ± {plus:.2f} codes after {quantity(cpu)} CPU s"
+    said = f"final needs {quantity(cpu)} CPU s a frame for a seen error of {error:.2f} ± {plus:.2f} codes"
     if theirs:
         needed, inside = Curve([p[:2] for p in theirs.values()]).cost(error)
         ratio = needed / cpu
         more = {"equal_error": ratio}
-        said += f"; Cycles + OIDN takes {'' if inside else '~'}{quantity(needed)} CPU s to the same error, {quantity(ratio)} times as much"
+        said += f"; Cycles + OIDN needs {'' if inside else '~'}{quantity(needed)} CPU s for the same error, {quantity(ratio)} times as much"
     picture = bench.results / f"curve-{title}.svg"
     picture.write_text(
         chart(

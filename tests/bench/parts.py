@@ -119,7 +119,8 @@ def all_pairs(bench):
     """All pairs of what can be asked for."""
     def run():
         with tempfile.TemporaryDirectory() as folder:
-            return [[list(pair), verdict] for pair, verdict in combinations.verdicts(bench.bin, Path(folder), 8 if bench.small else 1)]
+            found = combinations.verdicts(bench.bin, Path(folder), 8 if bench.small else 1)
+            return [[list(pair), verdict] for pair, verdict in found]
     rows = bench.step("pairs", run)
     failed = [f"{' + '.join(pair)}: {verdict}" for pair, verdict in rows if verdict.startswith("FAIL")]
     header, cells, refused = combinations.table(rows)
@@ -148,9 +149,15 @@ def leaving_by_scene(bench):
         header,
         cells,
         not broken,
-        [f"Files that each stage makes, by its folder: frames {leaving_matrix.FRAMES}, {leaving_matrix.SIZE}, QUALITY=draft.",
-         "One edit in a small room of eight frames:", results_page.table(leaving_matrix.EDITS_HEADER, leaving_matrix.edits_table(edits)),
-         *leaving_matrix.reasons(rows), *broken],
+        [
+            f"The numbers count the files that each stage makes, by its folder. Frames {leaving_matrix.FRAMES}, "
+            f"{leaving_matrix.SIZE}, QUALITY=draft.",
+            "One edit in a small room of eight frames:",
+            results_page.table(leaving_matrix.EDITS_HEADER, leaving_matrix.edits_table(edits)),
+            "Reasons of the plan:",
+            results_page.table(leaving_matrix.REASONS_HEADER, leaving_matrix.reasons(rows)),
+            *broken,
+        ],
         f"{len(rows)} scenes, {len(broken)} laws broken",
         1 if not broken else 0.5,
     )

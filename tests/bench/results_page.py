@@ -56,14 +56,14 @@ def changes_of_chains(what):
 def page_of(row):
     """docs/results/NAME.md"""
     text = (f"# {row['title']}\n\n`{row['command']}` · {row['machine']} · load {row['load']} · {row['date']}\n\n"
-            f"Asked: {row['asked']}. This part measured: {measured(row)}. Verdict: {verdict(row['met'])}.\n\n")
+            f"- asked: {row['asked']}\n- measured: {measured(row)}\n- verdict: {verdict(row['met'])}\n\n")
     if row.get("paper"):
         text += f"The paper reports: {row['paper']}.\n\n"
     if row.get("stale"):
         text += ("This page is stale. The tree has changed since the measurement, first at commit "
                  f"{row['stale']['since']}.\n"
-                 "Small chains of commands, the canaries (tests/bench/canaries.py), are run in place of the whole\n"
-                 "measurement. The following list says what they do differently today:\n\n"
+                 "A canary is a small chain of commands that stands for the whole measurement (tests/bench/canaries.py).\n"
+                 "These canaries have changed since the measurement:\n\n"
                  f"{''.join(changes_of_chains(row['stale']['what']))}\n")
     return text + table(row["header"], row["rows"]) + "".join(f"\n{note}\n" for note in row["notes"])
 

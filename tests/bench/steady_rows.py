@@ -142,9 +142,9 @@ def measure(bench, name):
         [[side_, quantity(row["cpu"]), *steady.cells(row["found"])] for side_, row in rows.items()],
         None if ratio is None else ratio >= 1 and jump <= 2,
         [f"Frames {frames[0]} to {frames[-1]} (Cycles: the first {PAIR}), {size}, two seeds; codes.", *notes],
-        f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, "
-        f"noise across a border over noise within a segment {jump:.1f}"
-        + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""),
+        f"the noise from frame to frame is {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes in boxes of 1, 5 and 15 "
+        f"pixels; across a border it is {jump:.1f} times as large as within a segment"
+        + (f"; that of Cycles is {quantity(ratio)} times ours" if ratio else ""),
         ratio and min(ratio, 2 / max(jump, 0.1)),
         **({"steadier": ratio} if ratio else {}),
     )

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Each minor version that a container's page lists has a file in its accept/ folder: minor_versions.py, in tests/formats.
+"""Each minor version that a container's page lists has a file in its accept/ folder: minor_versions.py, in
+tests/formats.
 
-The readers' tests read all files of accept/, so a reader that no longer reads an old version fails there. A version
-without a file would be read by no test: this fails, and names it.
+The readers' tests read all files of accept/, so a reader that no longer reads an old version fails there.
+A version without a file would be read by no test: this fails, and names it.
 """
+
 import re
 import struct
 import sys

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """All pairs of what a user can ask for, in a small scene: combinations.py BIN [--every N] [--keep FOLDER]
 
-Run at the top of the tree; BIN is the folder with the tools. A closed room with a lamp under its ceiling, a box that
-moves and a camera on a dolly, frames 1 to 3. Each pair is rendered by make, and the mean of each frame is compared with
-path tracing that has the same shutter, lens and smoke. A pair is right if the difference is below 2 % (METHOD=preview:
-10 %, since a preview is rough) and 4 standard errors of the path-traced mean, and no pixel is NaN or infinite. Or it is
-refused with one line and exit code 2. `--every N`: each Nth pair, a short form. The whole table:
-`make evidence PARTS=combinations`.
+Run at the top of the tree; BIN is the folder with the tools. A closed room with a lamp under its ceiling,
+a box that moves and a camera on a dolly, frames 1 to 3. Each pair is rendered by make, and the mean of
+each frame is compared with path tracing that has the same shutter, lens and smoke. A pair is right if the
+difference is below 2 % (METHOD=preview: 10 %, since a preview is rough) and 4 standard errors of the
+path-traced mean, and no pixel is NaN or infinite. Or it is refused with one line and exit code 2. `--every
+N`: each Nth pair, a short form. The whole table: `make evidence PARTS=combinations`.
 """
+
 import argparse
 import itertools
 import math
@@ -25,7 +26,7 @@ import exr  # noqa: E402
 from scenes import Scene, box_mesh  # noqa: E402
 
 FRAMES, SIZE = (1, 2, 3), "64x36"
-SAMPLES = 256            # of a path-traced pixel
+SAMPLES = 256  # of a path-traced pixel
 LIMIT, OF_PREVIEW = 0.02, 0.10
 SMOKE = {"VOLUME": "smoke.vdb", "VOLUME_OPTIONS": "--sigma-t 2 --albedo .8"}
 ASKED = {
@@ -42,15 +43,23 @@ ASKED = {
     "mattes": {"CHANNELS": "RGBA,cryptomatte"},
     "farm": {"RUN": "sh RUNNER", "GROUP": "frame"},
 }
-OF_PATHS = {"shutter": ["--shutter", "180"], "lens": ["--f-stop", ".5", "--focus", "1.5"],
-            "smoke": ["--volume", "smoke.vdb", "--sigma-t", "2", "--albedo", ".8"]}
+OF_PATHS = {
+    "shutter": ["--shutter", "180"],
+    "lens": ["--f-stop", ".5", "--focus", "1.5"],
+    "smoke": ["--volume", "smoke.vdb", "--sigma-t", "2", "--albedo", ".8"],
+}
 
 
 def make_scene(folder):
     scene = Scene()
     scene.room((-1, 0, -1), (1, 2, 1), scene.material([0.7, 0.6, 0.5]))
-    scene.quad((-0.4, 1.98, -0.4), (0.4, 1.98, -0.4), (0.4, 1.98, 0.4), (-0.4, 1.98, 0.4), scene.material(0.0, 6.0))
-    scene.mesh(*box_mesh((-0.7, 0, -0.8), (-0.3, 0.7, -0.4)), scene.material(0.8, metallic=1.0, roughness=0.3, specular=1.0))
+    scene.quad(
+        (-0.4, 1.98, -0.4), (0.4, 1.98, -0.4), (0.4, 1.98, 0.4), (-0.4, 1.98, 0.4), scene.material(0.0, 6.0)
+    )
+    scene.mesh(
+        *box_mesh((-0.7, 0, -0.8), (-0.3, 0.7, -0.4)),
+        scene.material(0.8, metallic=1.0, roughness=0.3, specular=1.0),
+    )
     box = scene.mesh(*box_mesh((-0.15, -0.15, -0.15), (0.15, 0.15, 0.15)), scene.material([0.2, 0.4, 0.7]))
     camera = scene.camera((0.1, 1.0, 0.95), (0, 0.9, -1), fov=1.0)
     scene.animate(box, "translation", [0, 4 / 24], [(-0.2, 0.4, 0), (0.4, 0.5, 0)])
@@ -64,9 +73,17 @@ def make_smoke(tools, folder):
     if not os.access(program, os.X_OK):
         return False
     (folder / "smoke.vdb").unlink(missing_ok=True)
-    values = b"".join(struct.pack("<f", max(0.0, 1 - math.dist((x, y, z), (7.5,) * 3) / 6))
-                      for x in range(16) for y in range(16) for z in range(16))
-    subprocess.run([program, folder / "smoke.vdb", "16", "16", "16", ".06", "-.45", ".3", "-.45"], input=values, check=True)
+    values = b"".join(
+        struct.pack("<f", max(0.0, 1 - math.dist((x, y, z), (7.5,) * 3) / 6))
+        for x in range(16)
+        for y in range(16)
+        for z in range(16)
+    )
+    subprocess.run(
+        [program, folder / "smoke.vdb", "16", "16", "16", ".06", "-.45", ".3", "-.45"],
+        input=values,
+        check=True,
+    )
     return True
 
 
@@ -82,12 +99,32 @@ class Means:
         if key not in self.known:
             file = self.folder / "path.exr"
             words = [word for name in key[1:] for word in OF_PATHS[name]]
-            subprocess.run([self.tools / "frame-render", "room.glb", "--integrator", "path", "--spp", str(SAMPLES), "--halves", "--size", SIZE,
-                            "--frame", str(frame), *words, "--channels", "RGBA", "-q", "-o", file], cwd=self.folder, check=True)
-            a, b = (mean_of(exr.read(file.with_name(f"path_{h}.exr"))) for h in "ab")
-            pixels = int(SIZE.split("x")[0]) * int(SIZE.split("x")[1])
-            spread = spread_of(*(exr.read(file.with_name(f"path_{h}.exr")) for h in "ab"))
-            self.known[key] = ((a + b) / 2, spread / math.sqrt(pixels))
+            subprocess.run(
+                [
+                    self.tools / "frame-render",
+                    "room.glb",
+                    "--integrator",
+                    "path",
+                    "--spp",
+                    str(SAMPLES),
+                    "--halves",
+                    "--size",
+                    SIZE,
+                    "--frame",
+                    str(frame),
+                    *words,
+                    "--channels",
+                    "RGBA",
+                    "-q",
+                    "-o",
+                    file,
+                ],
+                cwd=self.folder,
+                check=True,
+            )
+            halves = [exr.read(file.with_name(f"path_{h}.exr")) for h in "ab"]
+            mean = sum(mean_of(half) for half in halves) / 2
+            self.known[key] = (mean, spread_of(*halves) / math.sqrt(halves[0].width * halves[0].height))
         return self.known[key]
 
 
@@ -97,8 +134,10 @@ def mean_of(image):
 
 def spread_of(a, b):
     """Standard deviation of a pixel's mean of both halves, mean over pixels."""
-    squares = [sum((x - y) / 6 for x, y in values) ** 2
-               for values in zip(*(zip(a.channels[c], b.channels[c]) for c in "RGB"))]
+    squares = [
+        sum((x - y) / 6 for x, y in values) ** 2
+        for values in zip(*(zip(a.channels[c], b.channels[c]) for c in "RGB"))
+    ]
     return math.sqrt(math.fsum(squares) / len(squares))
 
 
@@ -111,21 +150,45 @@ class Runner:
         """What went wrong, as one line, or None; frames lie in self.folder/out."""
         out = self.folder / "out"
         shutil.rmtree(out, ignore_errors=True)
-        words = {"SCENE": "room.glb", "FRAMES": f"{FRAMES[0]}-{FRAMES[-1]}", "SIZE": SIZE, "OUT": "out", "BIN": self.tools, "PHOTONS": "100k"} | variables
-        words = {name: str(value).replace("RUNNER", str(self.folder / "runner")) for name, value in words.items()}
-        environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE") and name != "MFLAGS"}
-        done = subprocess.run(["make", "-s", "-f", TOP / "Makefile.example", "demo", *(f"{n}={v}" for n, v in words.items())],
-                              cwd=self.folder, capture_output=True, text=True, env=environment)
+        words = {
+            "SCENE": "room.glb",
+            "FRAMES": f"{FRAMES[0]}-{FRAMES[-1]}",
+            "SIZE": SIZE,
+            "OUT": "out",
+            "BIN": self.tools,
+            "PHOTONS": "100k",
+        } | variables
+        words = {
+            name: str(value).replace("RUNNER", str(self.folder / "runner")) for name, value in words.items()
+        }
+        environment = {
+            name: value
+            for name, value in os.environ.items()
+            if not name.startswith("MAKE") and name != "MFLAGS"
+        }
+        done = subprocess.run(
+            ["make", "-s", "-f", TOP / "Makefile.example", "demo", *(f"{n}={v}" for n, v in words.items())],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            env=environment,
+        )
         if done.returncode == 0:
             return None
         lines = [line for line in done.stderr.splitlines() if not line.startswith("make")]
-        return lines[0] if len(lines) == 1 and done.returncode == 2 else f"FAIL: exit {done.returncode}: {' / '.join(lines)[-300:]}"
+        return (
+            lines[0]
+            if len(lines) == 1 and done.returncode == 2
+            else f"FAIL: exit {done.returncode}: {' / '.join(lines)[-300:]}"
+        )
 
     def verdict(self, names):
         """What became of a pair."""
         variables = {}
         for name in names:
-            if clash := [word for word in ASKED[name] if word in variables and variables[word] != ASKED[name][word]]:
+            if clash := [
+                word for word in ASKED[name] if word in variables and variables[word] != ASKED[name][word]
+            ]:
                 return f"one variable: {clash[0]}"
             variables |= ASKED[name]
         refused = self.make(variables)
@@ -156,7 +219,10 @@ def table(rows):
             return verdict.removeprefix("right: ")
         notes.append(f"({len(notes) + 1}) {a} and {b}: {verdict}")
         return f"refused ({len(notes)})"
-    found = [[b, *(cell(a, b) for a in names[: i + 1]), *[""] * (len(names) - 1 - i)] for i, b in enumerate(names)]
+
+    found = [
+        [b, *(cell(a, b) for a in names[: i + 1]), *[""] * (len(names) - 1 - i)] for i, b in enumerate(names)
+    ]
     return ["", *names], found, notes
 
 
@@ -172,7 +238,9 @@ def verdicts(tools, folder, every=1):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("bin", type=Path)
     parser.add_argument("--every", type=int, default=1, metavar="N", help="each Nth pair")
     parser.add_argument("--keep", type=Path, help="work in this folder and keep it")

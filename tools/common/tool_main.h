@@ -41,8 +41,10 @@ enum ExitCode {
 
 /// How a run uses an input file.
 enum class InputRole {
-  file,         ///< no output may replace it
-  replaceable,  ///< read completely before anything is written, so an output may replace it, as in frame-render --base f.exr -o f.exr
+  file,  ///< no output may replace it
+  /// The tool reads the file completely before it writes anything. So an output may replace the file, as in
+  /// frame-render --base f.exr -o f.exr.
+  replaceable,
 };
 
 /// For number_option: any finite number from `least` on.

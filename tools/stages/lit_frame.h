@@ -23,7 +23,7 @@ class LitFrame {
   /// Makes the trees and the lights. `tree` serves all frames of a segment. At each surface a reference draws one of
   /// all lights; other frames draw a sun and one of the other lights (RenderScene::suns_apart).
   void build(SceneInput& input, StaticTree& tree, bool is_reference = false);
-  /// Light of lamps by way of mirrors and smooth glass is left to light paths (RenderScene::without_hidden_light).
+  /// Leaves light of lamps by way of mirrors and smooth glass to light paths (RenderScene::without_hidden_light).
   void leave_out_hidden_light() { scene_->without_hidden_light = true; }
   /// Gives the lights this guide to the sky; without an argument, a guide that learns from this frame.
   void guide_sky(std::shared_ptr<const SkyGuide> guide) { *lights_ = lights_->guided(std::move(guide)); }

@@ -9,8 +9,9 @@
 
 namespace tempolux::tools {
 
+/// Help text of scene-plan --shot.
 inline constexpr const char* kShotHelp =
-    "frames of the shot, which decides about light and kept pixels whatever frames are asked for; without: all frames "
+    "frames of the shot: they decide about light and kept pixels, whatever frames are asked for; without: all frames "
     "of the animation";
 
 struct PlanOptions {

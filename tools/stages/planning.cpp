@@ -98,6 +98,15 @@ ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
   };
 }
 
+/// The decisions in a file. Empty if the file does not exist, or if it is damaged, so that it is made again.
+std::optional<Decisions> kept_decisions(const std::string& file) {
+  const std::string text = content_of(file);
+  if (text.empty()) return {};
+  try {
+    return read_decisions(text);
+  } catch (const InputError&) { return {}; }
+}
+
 /// The shot's middle frame, if the plan decides whether frames keep its pixels; or null.
 const PlannedFrame* middle_for_pixels(const Plan& plan, const Wish& wish) {
   const std::optional<int> middle = plan.middle();
@@ -118,10 +127,7 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
                                 const std::function<Decisions()>& decide) {
   const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
   decided_.push_back(name);
-  const std::string kept = content_of(path_ + "/" + name + ".decided");
-  if (!kept.empty()) try {
-      return read_decisions(kept);
-    } catch (const InputError&) {}  // a damaged file is made again
+  if (const std::optional<Decisions> kept = kept_decisions(path_ + "/" + name + ".decided")) return *kept;
   const Decisions decided = decide();
   write_whole(path_ + "/" + name + ".decided", decisions_text(decided));
   return decided;

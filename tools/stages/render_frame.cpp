@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "formats/error.h"
-#include "lib/pilot/hidden_light.h"
 #include "lib/core/random.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
-#include "lib/render/feature_means.h"
+#include "lib/pilot/hidden_light.h"
 #include "lib/render/data_channels.h"
+#include "lib/render/feature_means.h"
 #include "lib/render/matte_channels.h"
 #include "lib/render/shutter.h"
 #include "lib/render/still_pixels.h"
@@ -135,8 +135,9 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   if (!is_reference) frame_options.known = &lit.light().get();
   Image image{options.width, options.height, {}, {}, {}, {}};
   std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
-  if (!edges.empty() && (view.has_lens() || shutter)) edges = soft_edges(scene, view, shutter.get());
-  if (asked(options.channels, "halves")) frame_options.edges = edges;
+  const bool blurred = view.has_lens() || shutter;
+  if (!edges.empty() && blurred) edges = soft_edges(scene, view, shutter.get());
+  if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
   StillPixels still;
   if (before) still = keep_pixels(tool, lit, *before, frame_options);
   RenderedFrame rendered = render_frame(scene, view, frame_options);
@@ -160,10 +161,9 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   }
   tool.stats().phase("data channels", true);
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
-  const bool blurred = view.has_lens() || shutter;
-  if (blurred || (asked(options.channels, "coverage") && asked(options.channels, "halves")))
-    add_feature_means(scene, view, shutter.get(), blurred ? std::span<const std::uint8_t>{} : edges, options.channels,
-                      image);
+  const auto sharp_edges = blurred ? std::span<const std::uint8_t>{} : frame_options.edges;
+  if (blurred || !sharp_edges.empty())
+    add_feature_means(scene, view, shutter.get(), sharp_edges, options.channels, image);
   add_seen_channels(scene, view, options.channels, image);
   add_matte_channels(scene, view, frame_options, rendered, MatteNames(input.scene()), options.channels, image);
   add_influence_channels(scene, view, lit.light().get().localised, options.channels, image);

@@ -141,19 +141,32 @@ TEST(Lens, BlurKeepsTheLight) {
   EXPECT_NEAR(blurred - sharp, 8.0 * 8 / 16 + 1.0 / 6, 0.01 * 4);
 }
 
+/// A wall of reflectance .2 on the left of x = 0 and one of .8 on its right, 4 m in front of the camera. The right
+/// wall's far end, at x = 9, lies at z = `end`.
+struct TwoWalls {
+  explicit TwoWalls(float end) : frame(of(made, end)), lit(frame) {}
+
+  test::HandMadeScene made;
+  const SceneFrame& frame;
+  test::Lit lit;
+
+ private:
+  static const SceneFrame& of(test::HandMadeScene& made, float end) {
+    made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
+    made.add_quad({0, -9, -4}, {9, -9, end}, {9, 9, end}, {0, 9, -4}, test::matte(Rgb(0.8f)));
+    return made.frame();
+  }
+};
+
 /// Behind the focus, the border between a dark and a bright wall runs down the middle of the picture. Through a lens
 /// whose discs are 8 pixels wide, a pixel there has half of each albedo, and at the disc's quarter (2 pixels off) the
 /// share of a disc beyond a chord at half its radius, 1/3 - sqrt(3) / (4 pi) = .1955, has the other one. A pinhole
 /// keeps both.
 TEST(Lens, AlbedoIsAMeanOverTheLens) {
-  test::HandMadeScene made;
-  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
-  made.add_quad({0, -9, -4}, {9, -9, -4}, {9, 9, -4}, {0, 9, -4}, test::matte(Rgb(0.8f)));
-  const SceneFrame& frame = made.frame();
-  const test::Lit lit(frame);
+  TwoWalls walls(-4);
   const CameraView view = lens_of(1, 2, 32);
   Image image{32, 18, {}, {}, {}, {}};
-  add_data_channels(lit.scene(), view, {"albedo"}, {}, {}, image);
+  add_data_channels(walls.lit.scene(), view, {"albedo"}, {}, {}, image);
   const auto row_mean = [&](int x) {  // of both columns beside the place x
     double sum = 0;
     for (int y = 0; y < 18; ++y)
@@ -162,7 +175,7 @@ TEST(Lens, AlbedoIsAMeanOverTheLens) {
     return sum;
   };
   EXPECT_NEAR(row_mean(14), 0.2, 1e-6);
-  add_feature_means(lit.scene(), view, nullptr, {}, {}, image);
+  add_feature_means(walls.lit.scene(), view, nullptr, {}, {}, image);
   EXPECT_NEAR(row_mean(16), 0.5, 0.01);
   // Pixels on both sides of the place average over 2 pixels: the circle's curvature there adds less than .003.
   EXPECT_NEAR(row_mean(14), 0.2 + 0.6 * (1 / 3.0 - std::sqrt(3.0) / (4 * M_PI)), 0.01);
@@ -174,15 +187,11 @@ TEST(Lens, AlbedoIsAMeanOverTheLens) {
 /// The channel N stays that of the pinhole. Meant to catch: the variance in place of its root, the error of one ray,
 /// means that replace the pinhole's normal.
 TEST(Lens, TheErrorOfAMeanIsThatOfItsShares) {
-  test::HandMadeScene made;
-  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
-  made.add_quad({0, -9, -4}, {9, -9, -3}, {9, 9, -3}, {0, 9, -4}, test::matte(Rgb(0.8f)));
-  const SceneFrame& frame = made.frame();
-  const test::Lit lit(frame);
+  TwoWalls walls(-3);
   const CameraView view = lens_of(1, 2, 32);
   Image image{32, 18, {}, {}, {}, {}};
-  add_data_channels(lit.scene(), view, {"albedo", "N"}, {}, {}, image);
-  add_feature_means(lit.scene(), view, nullptr, {}, {"coverage"}, image);
+  add_data_channels(walls.lit.scene(), view, {"albedo", "N"}, {}, {}, image);
+  add_feature_means(walls.lit.scene(), view, nullptr, {}, {"coverage"}, image);
   const auto at = [&](const char* name, int x, int y) {
     return double(image.find(name)->values[std::size_t(32 * y + x)]);
   };
@@ -206,18 +215,14 @@ TEST(Lens, TheErrorOfAMeanIsThatOfItsShares) {
 /// other pixels take their centre's ray, without an error. albedo stays that of the pinhole. Meant to catch: means of
 /// all pixels by one ray, edges by one ray.
 TEST(Lens, SharpPicturesTakeMeansAtEdges) {
-  test::HandMadeScene made;
-  made.add_quad({-9, -9, -4}, {0, -9, -4}, {0, 9, -4}, {-9, 9, -4}, test::matte(Rgb(0.2f)));
-  made.add_quad({0, -9, -4}, {9, -9, -4}, {9, 9, -4}, {0, 9, -4}, test::matte(Rgb(0.8f)));
-  const SceneFrame& frame = made.frame();
-  const test::Lit lit(frame);
+  TwoWalls walls(-4);
   const CameraView view = lens_of(0, 2, 33);
   Image image{view.width(), view.height(), {}, {}, {}, {}};
-  add_data_channels(lit.scene(), view, {"albedo"}, {}, {}, image);
+  add_data_channels(walls.lit.scene(), view, {"albedo"}, {}, {}, image);
   std::vector<std::uint8_t> edges(image.pixel_count());
   for (int y = 0; y < view.height(); ++y) edges[std::size_t(33 * y + 16)] = 1;
   const std::vector<float> pinhole = image.find("albedo.G")->values;
-  add_feature_means(lit.scene(), view, nullptr, edges, {"coverage"}, image);
+  add_feature_means(walls.lit.scene(), view, nullptr, edges, {"coverage"}, image);
   const auto at = [&](const char* name, int x) { return double(image.find(name)->values[std::size_t(33 * 5 + x)]); };
   EXPECT_NEAR(at("coverage.mean.albedo.G", 16), 0.5, 0.6 * 0.0625);
   EXPECT_NEAR(at("coverage.error.albedo.G", 16), 0.6 * 0.0625, 1e-3);
